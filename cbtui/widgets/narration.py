@@ -21,6 +21,7 @@ from sim.trace.model import Blocked, Deed, EntityInfo, Moment, Nanoseconds, Span
 from sim.trace.timeline import Timeline
 
 _ORDER = (
+    EntityKind.TASK,
     EntityKind.WAITABLE,
     EntityKind.TIMER,
     EntityKind.SUBSCRIPTION,
@@ -30,6 +31,7 @@ _ORDER = (
 )
 """The order in which rclpy's executors examine the entities of a node."""
 _IN_ORDER = {
+    EntityKind.TASK: "tasks come first",
     EntityKind.WAITABLE: "waitables come first",
     EntityKind.TIMER: "timers come first",
     EntityKind.SUBSCRIPTION: "no timer is before it",

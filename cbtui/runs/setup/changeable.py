@@ -132,7 +132,11 @@ def is_set_bool(entity: EntityInfo) -> bool:
 def programs_own(entity: EntityInfo) -> bool:
     """Tell whether an entity was created by the programs' own code rather than by rclpy."""
     named = bool(entity.callback or entity.name)
-    return named and entity.kind is not EntityKind.WAITABLE and entity.label not in HOUSEKEEPING
+    return (
+        named
+        and entity.kind not in (EntityKind.WAITABLE, EntityKind.TASK)
+        and entity.label not in HOUSEKEEPING
+    )
 
 
 def _group_of(entity: EntityInfo, timeline: Timeline) -> str:

@@ -2,9 +2,7 @@
 
 import ast
 from collections.abc import Sequence
-from itertools import chain
 
-from sim.diagnosis.edits.program_file import asked_of_file
 from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor, indentation, name_of
 
 _PARAMETERS = {
@@ -138,18 +136,3 @@ def defined_at(source: SourceEditor, line: int) -> ast.FunctionDef:
     if callback.lineno != line:
         raise NotSimpleError
     return callback
-
-
-@asked_of_file
-def tasks(source: SourceEditor) -> tuple[tuple[str, int], ...]:
-    """Return the functions that a program hands an executor as tasks or done-callbacks, with their lines."""
-    calls = (each for each in source.nodes(ast.Call) if isinstance(each.func, ast.Attribute) and each.args)
-    handed = (each.args[0] for each in calls if ast.unparse(each.func).endswith(_TASKS))
-    names = {ast.unparse(each).rpartition(".")[2] for each in handed}
-    functions = chain[ast.FunctionDef | ast.AsyncFunctionDef](
-        source.nodes(ast.FunctionDef), source.nodes(ast.AsyncFunctionDef)
-    )
-    return tuple((each.name, each.lineno) for each in functions if each.name in names)
-
-
-_TASKS = (".add_done_callback", ".create_task")

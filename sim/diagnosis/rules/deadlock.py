@@ -78,7 +78,7 @@ class SelfMadeDeadlock(Rule):
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         subject = who(found.subject, timeline)
         both = _need_own_groups(found, timeline)
-        apart = Remedy(both).words(timeline)
+        apart = Remedy(both).words(timeline) or "keep it"
         stands = timeline.positions_of(found.subject, Window(found.at, found.until + 1))
         about = _OWN_LOCK if found.about == WaitedFor.LOCK and found.size == 1 else found.about
         if about == _OWN_LOCK and stands[-1].keeper:
@@ -274,7 +274,15 @@ def _keeps_every_thread(found: Finding, timeline: Timeline) -> bool:
 
 
 def _need_own_groups(found: Finding, timeline: Timeline) -> tuple[EntityId, ...]:
-    """Return the subject, and the other callback of a cycle if it keeps its own reply from coming as well."""
+    """Return the subject, and the other callback of a cycle if it keeps its own reply from coming as well.
+
+    A task is in no group.
+    """
+    entities = timeline.entities
+    return tuple(each for each in _in_the_way(found, timeline) if entities[each].kind is not EntityKind.TASK)
+
+
+def _in_the_way(found: Finding, timeline: Timeline) -> tuple[EntityId, ...]:
     other = timeline.entities.get(found.culprit)
     blocked = timeline.moment(found.until - 1).blocked.values()
     services = {each.service for each in blocked if other is not None and each.entity == other.id}

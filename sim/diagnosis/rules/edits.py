@@ -27,7 +27,8 @@ def edits_for_reply(place: CodeLocation | None, entity: EntityId, timeline: Time
     later: tuple[Remedy, ...] = ()
     if not must_answer(entity, timeline):
         later = by_edit(place, "go on in a done-callback of the future", go_on_in_done_callback)
-    if place is None or made is None or made.file != place.file:
+    is_task = timeline.entities[entity].kind is EntityKind.TASK
+    if place is None or made is None or made.file != place.file or is_task:
         return later
     words = f"await the reply in an async def {subject}, and give {subject} a callback group of its own"
     return *later, *by_edit(place, words, await_reply, made.first_line)

@@ -111,10 +111,13 @@ def _abbreviated(letters: list[str]) -> list[str]:
     return letters if len(letters) <= _MOST_LETTERS else [*letters[: _MOST_LETTERS - 1], "others"]
 
 
+_IN_NO_GROUP = (EntityKind.WAITABLE, EntityKind.TASK)
+
+
 def _groups_of_goals(timeline: Timeline) -> set[GroupId]:
-    """Return the groups of the trace that stand for an action's execute callbacks, which are in no group."""
+    """Return the groups of the trace that stand for execute callbacks and tasks, which are in no group."""
     every = timeline.entities.values()
-    return {each.group for each in every if each.kind is EntityKind.WAITABLE and each.callback}
+    return {each.group for each in every if each.kind in _IN_NO_GROUP and each.callback}
 
 
 def _with_workers(timeline: Timeline) -> list[ExecutorInfo]:

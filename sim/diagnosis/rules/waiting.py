@@ -2,20 +2,17 @@
 
 from collections import defaultdict
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import ClassVar
 
 from sim.diagnosis.awaits import awaits_in_vain, awaits_in_vain_since, let_complete
 from sim.diagnosis.cures import Remedy, remedy_for_waits, who_moves
 from sim.diagnosis.edits.flags import event_setters
-from sim.diagnosis.edits.functions import tasks
 from sim.diagnosis.rule import (
     Explanation,
     Finding,
     Rule,
     Weight,
     entity_of,
-    line_location,
     line_of,
     place_of,
 )
@@ -196,11 +193,7 @@ class NoFreeWorker(KeptWaiting):
         beside_itself = len(timeline.spans_of(found.culprit, Window(found.at, found.at + 1)))
         room = remedy_for_waits([found.subject], found.subject, Window(found.at, found.until), timeline)
         cure = f"{room.words(timeline)}, or keep {culprit} short"
-        is_only = threads_for([found.culprit, found.subject], found.until, timeline) == 1
-        if not found.culprit:
-            busy = f"{only_thread(timeline) if is_only else 'a thread'} {_outside_callbacks(found, timeline)}"
-            cure = f"{room.words(timeline)}, or let done-callbacks and tasks neither wait nor take long"
-        elif is_only:
+        if threads_for([found.culprit, found.subject], found.until, timeline) == 1:
             busy = f"{only_thread(timeline)} ran {culprit}"
         elif beside_itself > 1:
             every = threads_for([found.culprit], found.until, timeline)
@@ -219,10 +212,7 @@ class NoFreeWorker(KeptWaiting):
         else:
             busy = f"all threads were busy, one with {culprit}"
         why = "its group would have let it in, but a callback also needs a thread to run on"
-        told = self._explained(found, timeline, busy, why, cure, room)
-        file = entity_of(found, timeline).file
-        known = tasks(file) if not found.culprit else ()
-        return replace(told, place=line_location(file, known[0][1])) if len(known) == 1 else told
+        return self._explained(found, timeline, busy, why, cure, room)
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
         """Irrelevant if the culprit also kept others out of its group, which is told with this.
@@ -235,17 +225,6 @@ class NoFreeWorker(KeptWaiting):
         asked = (EntityKind.CLIENT, EntityKind.SERVICE)
         is_told = any(timeline.entities[each].kind not in asked for each in kept)
         return None if is_told else super().weigh(found, timeline)
-
-
-def _outside_callbacks(found: Finding, timeline: Timeline) -> str:
-    """Say what a thread did while no callback of a node ran on it: an executor runs tasks there, too."""
-    window = Window(found.at, found.until)
-    blocks = (each for thread in timeline.threads for each in timeline.blocks_on(thread, window))
-    called = next((each.service for each in blocks if not each.entity), "")
-    did = f"waited in a call of {called}, made by no" if called else "was kept by no"
-    known = tasks(timeline.entities[found.subject].file)
-    named = f", such as {' or '.join(f'{name} (line {line})' for name, line in known)}" if known else ""
-    return f"{did} callback of a node: by a done-callback or another task{named}"
 
 
 class BehindOthers(KeptWaiting):

@@ -7,7 +7,8 @@ with attributes of the same names.
 import weakref
 from heapq import heappop, heappush
 from itertools import count
-from typing import TypeVar
+from types import CodeType
+from typing import Any, TypeVar
 
 from sim.probes.probe import Probe
 from sim.ros.middleware.host import Host
@@ -34,6 +35,8 @@ class Agenda:
         self.entities: list[Entity] = []
         self.polled: list[WaitableEntity] = []
         """The waitables that the program wrote; an executor polls whether they are ready."""
+        self.tasks: dict[CodeType, Any] = {}
+        """What stands on the trace for functions of the program that run as tasks, by their code."""
         self._probe = probe
         self._orders = 0
         self.ready: dict[Entity, int] = {}

@@ -11,6 +11,7 @@ from sim.interpreter.function_marks import calls_the_program
 from sim.ros.scheduling.cycle import Cycle, Work
 from sim.ros.scheduling.entity import Entity, TakenData
 from sim.ros.scheduling.handlers import Handler, awaits, discard
+from sim.ros.scheduling.program_task import ProgramTask, program_task
 from sim.ros.scheduling.task import Task
 from sim.trace.events import Reason
 
@@ -162,9 +163,12 @@ class CallbackRunner:
             with self.lock:
                 self._leave()
         elif entity is None:
+            shown, outer = self._task_started(task)
             try:
                 task()
             finally:
+                if shown is not None:
+                    self._task_left(task, shown, outer)
                 with self.lock:
                     self._leave()
             error = task.exception() if task._settled() else None
@@ -175,6 +179,29 @@ class CallbackRunner:
                 self._running.append(entity)
                 outer = self._probe.callback_resumed(entity)
             self._step(task, entity, outer)
+
+    def _task_started(self, task: Task[Any]) -> tuple[ProgramTask | None, int]:
+        """Record that a task of the program begins or continues; return its entity, and what ran before."""
+        with self.lock:
+            shown = program_task(task, self.executor.get_nodes)
+            if shown is None:
+                return None, 0
+            self._running.append(shown)
+            shown.entered_at = self.clock.now()
+            if task._was_suspended:
+                return shown, self._probe.callback_resumed(shown)
+            return shown, self._probe.callback_started(shown, 0, 0, 0)
+
+    def _task_left(self, task: Task[Any], shown: ProgramTask, outer: int) -> None:
+        """Record that a task of the program awaits, or has ended."""
+        with self.lock:
+            self._stop(shown)
+            if not task._settled():
+                self._probe.callback_suspended(shown, outer, task._handler)
+                return
+            if (error := task._exception) is not None:
+                self._probe.callback_failed(shown, error)
+            self._probe.callback_ended(shown, outer)
 
     def go_on(self, task: Task[Any]) -> None:
         """Continue a task on this thread, inside another task, which does not raise its exception."""

@@ -30,6 +30,8 @@ class EntityKind(StrEnum):
     CLIENT = "client"
     SERVICE = "service"
     WAITABLE = "waitable"
+    TASK = "task"
+    """A function that an executor runs in no callback group, such as a done-callback."""
 
 
 class GroupKind(StrEnum):

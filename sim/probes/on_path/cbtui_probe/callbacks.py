@@ -33,7 +33,12 @@ _OTHERS = {"rclpy", "cbtui_probe", *sys.stdlib_module_names}
 
 def is_own(frame: FrameType) -> bool:
     """Whether a frame runs the program's own code, not rclpy's, the probe's or the standard library's."""
-    root = str(frame.f_globals.get("__name__", "")).partition(".")[0]
+    return is_own_module(str(frame.f_globals.get("__name__", "")))
+
+
+def is_own_module(name: str) -> bool:
+    """Whether a module is the program's own."""
+    root = name.partition(".")[0]
     return root == "__main__" or root not in _OTHERS
 
 

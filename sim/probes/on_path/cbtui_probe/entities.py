@@ -7,12 +7,13 @@ import sys
 import time
 import weakref
 from functools import wraps
+from types import CodeType
 from typing import TYPE_CHECKING, Any
 
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.qos import QoSPolicyKind
 
-from .callbacks import Calls, is_own
+from .callbacks import Calls, is_own, is_own_module
 from .naming import written_at
 from .parameters import watch_parameters
 from .recorder import now
@@ -307,6 +308,28 @@ class Entities:
         entity, callback = WatchedEntity("waitable"), server._execute_callback
         server._execute_callback = Calls(self._recorder, entity).traced(callback)
         self._know(node, _Execution(), entity, callback, name)
+
+    def watch_tasks(self, executor_class: Any) -> None:
+        """Record the program's functions that executors run as tasks, such as done-callbacks, in no group.
+
+        On the trace each is in a reentrant group of its own.
+        """
+        create, known = executor_class.create_task, dict[tuple[CodeType, int], WatchedEntity]()
+
+        @wraps(create)
+        def create_known(executor: Any, callback: Any, *args: Any, **kwargs: Any) -> Any:
+            code = getattr(callback, "__code__", None)
+            owner = getattr(callback, "__self__", None)
+            node = owner if owner in self.nodes else next(iter(executor.get_nodes()), None)
+            if isinstance(code, CodeType) and is_own_module(callback.__module__) and node is not None:
+                key = code, id(node)
+                if key not in known:
+                    known[key] = WatchedEntity("task")
+                    self._know(node, _Execution(), known[key], callback, "")
+                callback = Calls(self._recorder, known[key]).traced(callback)
+            return create(executor, callback, *args, **kwargs)
+
+        executor_class.create_task = create_known
 
 
 def _watch_triggering(guard: Any, entity: WatchedEntity) -> None:

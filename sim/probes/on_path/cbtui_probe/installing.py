@@ -55,6 +55,7 @@ def install(folder: str) -> None:
     executors.watch(rclpy, rclpy_implementation)
     entities.watch(rclpy.node.Node)
     entities.watch_rhythms(rclpy.timer.Timer)
+    entities.watch_tasks(rclpy.executors.Executor)
     entities.watch_publishing(rclpy.publisher.Publisher)
     watch_clients(recorder, rclpy.client.Client)
     watch_services(recorder, rclpy.service.Service, rclpy_implementation)

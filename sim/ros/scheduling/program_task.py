@@ -1,0 +1,63 @@
+"""The program's functions that executors run as tasks, such as done-callbacks, on the trace.
+
+A task belongs to no callback group. So that the trace shows it, each such function has an entity in a
+reentrant group of its own: that group admits everything, as if there were none.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from functools import lru_cache
+from types import CodeType
+from typing import Any
+
+from sim.probes.own_code import is_written
+from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
+from sim.ros.scheduling.entity import Entity, OwnerNode, TakenData
+from sim.ros.scheduling.task import Task
+from sim.trace.events import EntityKind
+
+
+class ProgramTask(Entity):
+    """The entity that stands for a function of the program that an executor runs as a task.
+
+    No node has it, and no executor yields it.
+    """
+
+    kind = EntityKind.TASK
+    rank = -1
+
+    def __init__(self, node: OwnerNode, function: Callable[..., Any]) -> None:
+        self.callback = function
+        super().__init__(node, "", ReentrantCallbackGroup())
+        node.context.probe.entity_made(self)
+
+    def take(self, now: int) -> TakenData | None:
+        """None: nothing arrives here."""
+        return None
+
+    def invoke(self, taken: TakenData) -> None:
+        """Do nothing: nothing can be taken."""
+
+
+def program_task(task: Task[Any], nodes: Callable[[], list[OwnerNode]]) -> ProgramTask | None:
+    """Return the entity of a task's function; None if it is not the program's, or the executor has no node.
+
+    It is in the node whose method it is, else in the first one of ``nodes``. With the host's lock held.
+    """
+    function = task._handler
+    code = function.cr_code if inspect.iscoroutine(function) else getattr(function, "__code__", None)
+    if not isinstance(code, CodeType) or not _is_written(code.co_filename):
+        return None
+    served, owner = nodes(), getattr(function, "__self__", None)
+    if not served:
+        return None
+    node = next((each for each in served if each is owner), served[0])
+    known: dict[CodeType, ProgramTask] = node._agenda.tasks
+    if code not in known:
+        known[code] = ProgramTask(node, function)
+    return known[code]
+
+
+_is_written = lru_cache(maxsize=256)(is_written)
