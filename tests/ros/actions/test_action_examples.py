@@ -92,7 +92,9 @@ def test_the_execution_of_a_goal_is_on_the_trace_of_a_program(tmp_path: Path) ->
     shown = {event.entity: event for event in outcome.events if isinstance(event, EntityAppeared)}
     started = [shown[event.entity] for event in outcome.events if isinstance(event, CallbackStarted)]
     assert [each.name for each in started if each.callback == "execute_callback"] == ["/fibonacci"]
-    assert all(each.kind is EntityKind.WAITABLE for each in started)
+    tasks = {each.callback for each in started if each.kind is EntityKind.TASK}
+    assert tasks == {"goal_response_callback", "get_result_callback"}
+    assert all(each.kind in (EntityKind.WAITABLE, EntityKind.TASK) for each in started)
 
 
 def test_the_programs_run_on_the_real_clock_too(tmp_path: Path) -> None:
