@@ -37,6 +37,8 @@ class CallbackRunner:
         """The executor's cycle."""
         self._probe = executor.context.probe
         self._coroutines: dict[Task[Any], Entity] = {}
+        self._shown: dict[Task[Any], tuple[ProgramTask, int]] = {}
+        """What stands on the trace for tasks that run, and what ran on their threads before."""
         self._running: list[Entity] = []
         self._stopped_at = 0
         self.at_work = 0
@@ -105,6 +107,7 @@ class CallbackRunner:
         Otherwise the trace could have the next take of another thread, or a drop, before this event.
         """
         if isinstance(begun, Task):
+            self._task_started(begun)
             return begun
         entity, taken = begun
         return entity, taken, self._probe.callback_started(entity, taken.message, taken.age, taken.left)
@@ -163,13 +166,11 @@ class CallbackRunner:
             with self.lock:
                 self._leave()
         elif entity is None:
-            shown, outer = self._task_started(task)
             try:
                 task()
             finally:
-                if shown is not None:
-                    self._task_left(task, shown, outer)
                 with self.lock:
+                    self._task_left(task)
                     self._leave()
             error = task.exception() if task._settled() else None
             if error is not None:
@@ -180,33 +181,36 @@ class CallbackRunner:
                 outer = self._probe.callback_resumed(entity)
             self._step(task, entity, outer)
 
-    def _task_started(self, task: Task[Any]) -> tuple[ProgramTask | None, int]:
-        """Record that a task of the program begins or continues; return its entity, and what ran before."""
-        with self.lock:
-            shown = program_task(task, self.executor.get_nodes)
-            if shown is None:
-                return None, 0
-            self._running.append(shown)
-            shown.entered_at = self.clock.now()
-            if task._was_suspended:
-                return shown, self._probe.callback_resumed(shown)
-            return shown, self._probe.callback_started(shown, 0, 0, 0)
+    def _task_started(self, task: Task[Any]) -> None:
+        """Record that a task of the program begins or continues here. Called with the lock held."""
+        shown = None if task in self._coroutines else program_task(task, self.executor.get_nodes)
+        if shown is None or task._waits_still:
+            return
+        self._running.append(shown)
+        shown.entered_at = self.clock.now()
+        probe = self._probe
+        was_here = task._was_suspended
+        outer = probe.callback_resumed(shown) if was_here else probe.callback_started(shown, 0, 0, 0)
+        self._shown[task] = shown, outer
 
-    def _task_left(self, task: Task[Any], shown: ProgramTask, outer: int) -> None:
-        """Record that a task of the program awaits, or has ended."""
-        with self.lock:
-            self._stop(shown)
-            if not task._settled():
-                self._probe.callback_suspended(shown, outer, task._handler)
-                return
-            if (error := task._exception) is not None:
-                self._probe.callback_failed(shown, error)
-            self._probe.callback_ended(shown, outer)
+    def _task_left(self, task: Task[Any]) -> None:
+        """Record that a task of the program awaits, or has ended. Called with the lock held."""
+        shown, outer = self._shown.pop(task, (None, 0))
+        if shown is None:
+            return
+        self._running.remove(shown)
+        if not task._settled():
+            self._probe.callback_suspended(shown, outer, task._handler)
+            return
+        if (error := task._exception) is not None:
+            self._probe.callback_failed(shown, error)
+        self._probe.callback_ended(shown, outer)
 
     def go_on(self, task: Task[Any]) -> None:
         """Continue a task on this thread, inside another task, which does not raise its exception."""
         with self.lock:
             self.at_work += 1
+            self._task_started(task)
         try:
             self._run_task(task)
         except Exception as error:  # noqa: BLE001 -- kept for the spinning thread, or lost
