@@ -258,11 +258,11 @@ class MenuScreen(SizedScreen[None]):
         typed = event.character or ""
         if not self.is_current:
             return
-        if typed.isalnum() and (self.query(MenuSearch) or event.key not in self.active_bindings):
+        is_searching = self.query(MenuSearch) and not self._is_old_search
+        if typed.isalnum() and (is_searching or event.key not in self.active_bindings):
             event.stop()
             self.action_search()
-            search = self.query_one(MenuSearch)
-            search.insert_text_at_cursor(typed)
+            (search := self.query_one(MenuSearch)).insert_text_at_cursor(typed)
             self._show_found(search.value)  # at once, as the next key may already be enter
 
     @on(Input.Changed)

@@ -80,21 +80,6 @@ class GroupInfo:
         return chr(ord("A") + within) + (str(turn + 1) if turn else "")
 
 
-_NAMES_THAT_SAY_NOTHING = ("callback", "<lambda>")
-
-
-def spoken_name(kind: EntityKind, name: str, callback: str) -> str:
-    """Return the callback's function, else the topic, service or action, else the kind.
-
-    A function whose name says nothing gives way to these; that of a message filter is ``callback``.
-    A client is named after the reply that it takes, so that it is not mistaken for the service.
-    """
-    if kind is EntityKind.CLIENT and name and not callback:
-        return f"reply of {name}"
-    named = "" if callback in _NAMES_THAT_SAY_NOTHING else callback
-    return named or name or callback or kind.value
-
-
 @dataclass(frozen=True, slots=True)
 class EntityInfo:
     """Something with a callback: a timer, subscription, service, client, guard condition or waitable."""
@@ -120,12 +105,28 @@ class EntityInfo:
     def label(self) -> str:
         """A short name: the last part of its topic or service, else its callback; a goal's callback."""
         by_callback = self.callback if self.kind is EntityKind.WAITABLE else ""
-        return by_callback or self.name.rsplit("/", 1)[-1] or self.callback
+        return by_callback or self.name.rsplit("/", 1)[-1] or self.function
+
+    @property
+    def function(self) -> str:
+        """Its callback; of a lambda with the line, as it has no name: ``<lambda>:12``."""
+        line = f":{self.first_line}" if self.callback == _LAMBDA and self.first_line else ""
+        return f"{self.callback}{line}"
 
     @property
     def spoken_name(self) -> str:
-        """Its name in sentences and tables."""
-        return spoken_name(self.kind, self.name, self.callback)
+        """Its name in sentences and tables: its function, else the topic, service or action, else the kind.
+
+        A function whose name says nothing gives way to these; that of a message filter is ``callback``.
+        A client is named after the reply that it takes, so that it is not mistaken for the service.
+        """
+        if self.kind is EntityKind.CLIENT and self.name and not self.callback:
+            return f"reply of {self.name}"
+        named = "" if self.callback in ("callback", _LAMBDA) else self.callback
+        return named or self.name or self.function or self.kind.value
+
+
+_LAMBDA = "<lambda>"
 
 
 class Lasting:

@@ -131,7 +131,11 @@ def test_a_slip_in_a_topic_that_another_node_hears_is_told_with_the_name_that_is
         def run(_: Simulation) -> None:
             node = Node("n")
             publisher = node.create_publisher(Int32, "chatter", 10)
-            node.create_timer(0.5, lambda: publisher.publish(Int32(data=1)))
+
+            def chat() -> None:
+                publisher.publish(Int32(data=1))
+
+            node.create_timer(0.5, chat)
             node.create_subscription(Int32, "chatter", lambda _: None, 10)
             node.create_subscription(kind, also, lambda _: None, 10)
             spin(node, None)
@@ -141,7 +145,7 @@ def test_a_slip_in_a_topic_that_another_node_hears_is_told_with_the_name_that_is
     run = diagnosed(program("chattr", Int32), 2.0)
     told = run.explained("misspelt-topic")
     assert told.what.endswith(
-        "nobody publishes on /chattr; did you mean /chatter, which is published by <lambda>?"
+        "nobody publishes on /chattr; did you mean /chatter, which is published by chat?"
     )
     assert told.cure == "if one topic is meant, give it one name: subscribe to /chatter"
     assert len(told.remedies) == 1

@@ -217,18 +217,21 @@ def test_in_an_event_queue_no_group_of_its_own_helps(same_group: bool) -> None:
     def program(simulation: Simulation) -> None:
         node = Node("n")
 
+        def slow() -> None:
+            simulation.sleep(3.0)
+
         def quick() -> None: ...
 
         first = MutuallyExclusiveCallbackGroup()
-        once(node, 1.0, lambda: simulation.sleep(3.0), first)
+        once(node, 1.0, slow, first)
         once(node, 1.1, quick, first if same_group else MutuallyExclusiveCallbackGroup())
         rclpy.spin(node, EventsExecutor())
 
     run = diagnosed(program)
     assert run.problems() == {("behind-others", "quick")}
     told = run.explained("behind-others")
-    assert told.what == "quick waited 2.9 s: the EventsExecutor was running <lambda>"
-    assert told.cure.startswith("keep <lambda> short, or let a MultiThreadedExecutor")
+    assert told.what == "quick waited 2.9 s: the EventsExecutor was running slow"
+    assert told.cure.startswith("keep slow short, or let a MultiThreadedExecutor")
     assert ("group of its own" in told.cure) is same_group
 
 

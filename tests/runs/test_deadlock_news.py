@@ -36,7 +36,11 @@ def stuck_at_three() -> list[AnyEvent]:
         serve_outside(simulation)
         node = Node("n")
         client = node.create_client(SetBool, "/outside")
-        once(node, 3.0, lambda: client.call(SetBool.Request()))
+
+        def ask() -> None:
+            client.call(SetBool.Request())
+
+        once(node, 3.0, ask)
         node.create_timer(0.5, lambda: None, callback_group=MutuallyExclusiveCallbackGroup())
         spin(node, 2)
 
@@ -62,7 +66,7 @@ def told(events: Sequence[AnyEvent]) -> Iterator[tuple[float, str]]:
 def test_a_deadlock_is_told_once_within_two_seconds_with_what_is_waited_for_and_the_line() -> None:
     [(at, sentence)] = told(stuck_at_three())
     assert 3.0 <= at <= 5.0
-    assert sentence.startswith("deadlock: <lambda> waits for /outside for ever; ")
+    assert sentence.startswith("deadlock: ask waits for /outside for ever; ")
     assert sentence.count("test_deadlock_news.py:") == 1
 
 
@@ -91,7 +95,7 @@ def test_a_run_on_the_real_clock_writes_it_to_standard_error(
     monkeypatch.setattr("cbtui.runs.headless.headless.FollowedRun", Played)
     run_headless(program_setup(Path("node.py"), 10.0, clock))
     said = capsys.readouterr()
-    assert said.err.count("cbtui: deadlock: <lambda> waits for /outside for ever") == times
+    assert said.err.count("cbtui: deadlock: ask waits for /outside for ever") == times
     assert said.out.count("deadlock: ") == 1
 
 

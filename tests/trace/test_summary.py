@@ -3,6 +3,7 @@
 import pytest
 
 from sim.quantities.nanoseconds import SECOND
+from sim.trace.descriptions import name_of
 from sim.trace.events import Published, Reason, RunEnded
 from sim.trace.figures.summary import Summary, robot_incrementally, summarise
 from sim.trace.figures.summary_text import NOT_KNOWN, plain_text
@@ -195,13 +196,23 @@ def test_callbacks_of_one_name_are_told_apart_by_their_topics() -> None:
     assert names == ["timer_callback", "odom_callback (/odom)", "odom_callback (/scan)"]
 
 
-def test_callbacks_of_one_name_in_one_node_are_told_apart_by_their_lines() -> None:
+@pytest.mark.parametrize(
+    ("function", "told"),
+    [
+        ("press", ["press (/press, line 18)", "press (/press, line 19)"]),
+        ("<lambda>", ["<lambda>:18", "<lambda>:19"]),
+    ],
+)
+def test_callbacks_of_one_name_in_one_node_are_told_apart_by_their_lines(
+    function: str, told: list[str]
+) -> None:
     run = Run()
     group = run.exclusive(run.node("/press"))
-    for line in (18, 19):
-        run.timer(group, "<lambda>", 1.0, lines=(line, line))
-    names = [each.name for each in summary_of(run).callbacks]
-    assert names == ["<lambda> (/press, line 18)", "<lambda> (/press, line 19)"]
+    timers = [run.timer(group, function, 1.0, lines=(line, line)) for line in (18, 19)]
+    timeline = Timeline()
+    timeline.extend(run.events)
+    assert [each.name for each in summarise(timeline).callbacks] == told
+    assert name_of(timers[1], timeline) == (told[1] if function == "<lambda>" else function)
 
 
 def test_service_calls_tell_how_many_were_answered_and_how_soon() -> None:

@@ -109,7 +109,7 @@ def _callback(entity: EntityInfo) -> str:
         case EntityKind.CLIENT:
             return f"client of ``{entity.name}``"
         case _ if entity.name and entity.callback:
-            return f"``{entity.callback}`` for ``{entity.name}``"
+            return f"``{entity.function}`` for ``{entity.name}``"
     return f"``{entity.spoken_name}``"
 
 

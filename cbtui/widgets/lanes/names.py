@@ -87,7 +87,7 @@ def told_apart(entity: EntityInfo, timeline: Timeline, reply: str) -> str:
         return f"{entity.label} {reply}"
     if entity.kind is EntityKind.WAITABLE and not entity.callback:  # an action's server or client
         return f"{timeline.nodes.get(entity.node, '').rpartition('/')[2]} {entity.label}"
-    return entity.callback or entity.label
+    return entity.function or entity.label
 
 
 def entity_name(name: str, room: int, ellipsis: str, names: Collection[str] = ()) -> str:

@@ -9,14 +9,14 @@ from operator import attrgetter
 from typing import NamedTuple, TypeAlias
 
 from sim.trace.descriptions import why_waiting
-from sim.trace.events import EntityId, EntityKind
+from sim.trace.events import EntityId
 from sim.trace.figures.concurrency import threads_incrementally
 from sim.trace.figures.losses import losses
 from sim.trace.figures.statistics import CallbackStatistics, statistics_incrementally, with_calls_at_start
 from sim.trace.figures.summary import RobotFigures, robot_incrementally, trail_in_parts
 from sim.trace.figures.waiting import waited_by
 from sim.trace.incremental import STEP_SIZE, Incremental, collect, run_to_end
-from sim.trace.model import EntityInfo, Nanoseconds, Span, Window, spoken_name
+from sim.trace.model import EntityInfo, Nanoseconds, Span, Window
 from sim.trace.timeline import Timeline
 
 CallbackKey: TypeAlias = tuple[str, str, str, str, int]
@@ -179,14 +179,15 @@ def compare_incrementally(first: Timeline, second: Timeline, window: Window) -> 
     taken = {*of_first, *partners.values()}
     pairs += [(key, None, callback) for key, callback in of_second.items() if key not in taken]
     used = [pair for pair in pairs if any(callback and not callback.idle for callback in pair[1:])]
-    short = Counter(_short_name(key) for key, *_ in used)
+    names = [_name(one or other) for _, one, other in used]
+    shared = Counter(names)
     return Comparison(
         window,
         (yield from _run_figures(first, of_first_run)),
         (yield from _run_figures(second, of_second_run)),
         tuple(
-            CallbackPair(_short_name(key) if short[_short_name(key)] == 1 else _long_name(key), one, other)
-            for key, one, other in used
+            CallbackPair(name if shared[name] == 1 else _long_name(name, key), one, other)
+            for name, (key, one, other) in zip(names, used, strict=True)
         ),
         first.is_real or second.is_real,
         unlike_commands(first, second, window.end),
@@ -319,16 +320,15 @@ def _partners(first: Iterable[CallbackKey], second: Iterable[CallbackKey]) -> di
     return {key: found[key[1:]] for key in alone if nodeless[0][key[1:]] == 1 and key[1:] in found}
 
 
-def _short_name(key: CallbackKey) -> str:
-    _, kind, callback, name, _ = key
-    return spoken_name(EntityKind(kind), name, callback)
+def _name(callback: CallbackInRun | None) -> str:
+    return callback.figures.entity.spoken_name if callback else ""
 
 
-def _long_name(key: CallbackKey) -> str:
+def _long_name(short: str, key: CallbackKey) -> str:
     node, _, _, name, number = key
-    known = "" if name == _short_name(key) else name
+    known = "" if name == short else name
     place = known if known.startswith(f"{node}/") else " ".join(part for part in (node, known) if part)
-    return f"{_short_name(key)} ({place}{f' #{number}' if number > 1 else ''})"
+    return f"{short} ({place}{f' #{number}' if number > 1 else ''})"
 
 
 def _callbacks_of(

@@ -11,6 +11,7 @@ from cbtui.app import CbtuiApp
 from cbtui.runs.setup.recent import RecentEntry, RecentKind, RecentList
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
+from cbtui.screens.windows.open_file import OpenFileScreen
 from cbtui.widgets.menu_list import MenuList
 from cbtui.widgets.menu_search import MenuSearch
 from lessons.lesson import Lesson
@@ -96,7 +97,9 @@ async def test_a_search_begins_anew_after_a_lesson(program: Path) -> None:
         await pilot.pause()
         app.pop_screen()
         await pilot.pause()
-        await pilot.press("slash", *"my_n")
+        await pilot.press("o")
+        assert isinstance(app.screen, OpenFileScreen), "letters are keys again, and no words to look for"
+        await pilot.press("escape", "slash", *"my_n")
         await pilot.pause()
         assert [each.value for each in app.screen.query(MenuSearch)] == ["my_n"]
         assert "my_node.py" in text_of(app)
