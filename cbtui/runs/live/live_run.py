@@ -1,5 +1,6 @@
 """The run that screens show: its protocol, and the live run of an engine."""
 
+from collections import deque
 from collections.abc import Sequence
 from enum import Enum, auto
 from itertools import count
@@ -139,6 +140,9 @@ def neighbouring_speed(speed: float | None, speeds: Sequence[float | None], step
     return speeds[max(0, min(speeds.index(speed) + steps, len(speeds) - 1))]
 
 
+_STOPS = 1000
+
+
 class LiveRun:
     """A run of an engine. Used on the UI thread, to which the session's batches are posted."""
 
@@ -155,6 +159,8 @@ class LiveRun:
         """Whether the last command that concerned time was a step."""
         self.goal: Nanoseconds | None = None
         """The moment to which the run was last sent; None if it goes on without an end, or was stopped."""
+        self.stops: deque[Nanoseconds] = deque(maxlen=_STOPS)
+        """The moments from which the latest steps began: looking back goes through them, too."""
         self._silent = False
         self._time_passes = True
         self._over = False
@@ -308,6 +314,8 @@ class LiveRun:
 
     def step(self) -> None:
         """Run to the next scheduling decision, and pause there."""
+        if self.paused:
+            self.stops.append(self.timeline.end)
         self.stepped, self.goal = True, None
         self._session.send(Step())
 

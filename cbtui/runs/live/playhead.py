@@ -1,6 +1,6 @@
 """The playhead: the cursor and the window of time on screen."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from sim.quantities.nanoseconds import SECOND
@@ -64,13 +64,18 @@ class Playhead:
         at = max(self.first, at)
         return replace(self, at=at, start=self._start_that_shows(at, end))
 
-    def beside(self, timelines: Sequence[Timeline], end: Nanoseconds, step: int) -> "Playhead":
-        """Go to the previous (``step`` < 0) or next event of any run; losses in a row count as one.
+    def beside(
+        self, timelines: Sequence[Timeline], end: Nanoseconds, step: int, stops: Iterable[Nanoseconds] = ()
+    ) -> "Playhead":
+        """Go to the previous (``step`` < 0) or next event of any run, or one of the other ``stops``.
 
-        Before the first one is the beginning; after the last, the cursor follows the end.
+        Losses in a row count as one event. Before the first one is the beginning; after the last, the
+        cursor follows the end.
         """
-        neighbours = [_event_beside(timeline, self.now(end), step) for timeline in timelines]
+        now = self.now(end)
+        neighbours = [_event_beside(timeline, now, step) for timeline in timelines]
         found = [at for at in neighbours if at is not None]
+        found += [at for at in stops if (at > now if step > 0 else at < now)]
         if found:
             return self.moved_to(min(found) if step > 0 else max(found), end)
         return self.live() if step > 0 else self.moved_to(self.first, end)

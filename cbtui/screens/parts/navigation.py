@@ -97,7 +97,9 @@ class TimeNavigation(ScreenPart):
         here = self.decisions() - 1 if self.place is None else self.place
         place = here + step
         if self.playhead.at is None or not 0 <= place < self.decisions():
-            self.move(self.playhead.beside(self.timelines(), self.end(), step))
+            run = self.live()
+            stops = () if run is None else run.stops
+            self.move(self.playhead.beside(self.timelines(), self.end(), step, stops))
             place = 0 if step > 0 else self.decisions() - 1
         self.place = None if self.playhead.at is None else place
         self.stepped()

@@ -8,6 +8,7 @@ from cbtui.runs.live.live_run import LiveRun
 from cbtui.screens.parts.navigation import MomentKey, TimeNavigation
 from sim.engine.commands import Command, Pause, RunUntil, Step
 from sim.engine.setup import RunSetup
+from sim.trace.events import TimePassed
 from sim.trace.timeline import Timeline
 from tests.screens.parts.hosts import FakeHost
 from tests.support.builder import ns
@@ -114,6 +115,22 @@ def test_a_step_at_the_end_is_the_engines_and_one_in_the_past_is_not(engines: Fa
     navigation.action_earlier()
     navigation.action_step()
     assert commands(engines) == [Pause(), Step()]
+
+
+def test_looking_back_goes_through_the_moments_from_which_steps_began(engines: FakeEngines) -> None:
+    run, navigation = live(engines)
+    run.pause()
+    between = [ns(5.25), ns(5.26), ns(5.27)]
+    for at in between:
+        navigation.action_step()
+        run.take([TimePassed(at)])
+    reached = []
+    for _ in range(3):
+        navigation.action_step_back()
+        reached.append(navigation.now)
+    assert reached == [ns(5.26), ns(5.25), run.stops[0]]
+    navigation.action_step()
+    assert navigation.now == ns(5.25)
 
 
 def test_a_moment_to_come_is_run_to_and_one_that_has_passed_is_looked_at(engines: FakeEngines) -> None:
