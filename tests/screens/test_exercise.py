@@ -14,6 +14,7 @@ from cbtui.runs.judged.run_budget import RunBudget
 from cbtui.screens.compare import CompareScreen
 from cbtui.screens.exercise import ExerciseScreen
 from cbtui.screens.lesson import LessonScreen
+from cbtui.screens.windows.solution import SolutionScreen
 from cbtui.widgets.checks import ChecksView
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.key_bar import KeyBar
@@ -236,6 +237,11 @@ async def test_a_file_that_passes_is_noted_and_the_next_lesson_named() -> None:
         assert Progress().of(LESSON.id).passed
         assert "n next" in lines_of(app)[-1]
         assert "hint" not in offered(app)
+        await pilot.press("h")
+        assert [each.message for each in app._notifications][-1].startswith("No hint is left or needed; H")
+        await pilot.press("H")
+        assert isinstance(app.screen, SolutionScreen), "nothing is left to find out, so nothing is asked"
+        await pilot.press("escape")
         assert "all 5 checks pass, left of the lesson: predict, run, explain" in text_of(app)
         await pilot.press("w")  # another run, of which that is not known
         await settle(pilot)

@@ -65,13 +65,13 @@ class ExerciseHelp(ScreenPart):
             self.screen.notify(hint, title=title, timeout=_READING, markup=False)
 
     def action_solution(self) -> None:
-        """Show the solution, after a confirmation the first time."""
+        """Show the solution, after a confirmation the first time if the exercise is not solved."""
         from cbtui.screens.windows.solution import ConfirmSolutionScreen  # with Pygments
 
         exercise, progress = self._exercise, self.learning.progress
         if exercise is None:
             return
-        if progress.solution:
+        if progress.solution or self.is_done():
             self._show_solution(True)
         else:
             left = len(exercise.hints) - progress.hints
