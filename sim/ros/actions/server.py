@@ -8,7 +8,7 @@ from typing import Any
 
 from sim.interfaces import message
 from sim.ros.actions.cancelling import goals_to_cancel, uuid_of
-from sim.ros.actions.execution import GoalExecution
+from sim.ros.actions.execution import GoalRun
 from sim.ros.actions.goal_handle import ServerGoalHandle
 from sim.ros.actions.goal_states import GoalEvent, GoalState
 from sim.ros.actions.waitable import ActionWaitable, PartData, await_or_execute
@@ -19,8 +19,10 @@ from sim.ros.qos.qos import QoSProfile, qos_profile_action_status_default, qos_p
 from sim.ros.scheduling.callback_groups import CallbackGroup
 from sim.ros.scheduling.entity import TakenData
 from sim.ros.scheduling.executors import Executor, MultiThreadedExecutor
+from sim.ros.scheduling.program_task import TaskEntity
 from sim.ros.scheduling.task import Future
 from sim.ros.scheduling.waitable import NumberOfEntities
+from sim.trace.events import EntityKind
 
 __all__ = [
     "ActionServer",
@@ -124,7 +126,7 @@ class ActionServer(ActionWaitable):
             )
             self._feedback = self._add_publisher(impl.FeedbackMessage, "feedback", feedback_pub_qos_profile)
             self._status = self._add_publisher(impl.GoalStatusMessage, "status", status_pub_qos_profile)
-            self._execution = GoalExecution(node, self.action, self._execute_callback)
+            self._execution = TaskEntity(node, EntityKind.WAITABLE, self.action, self._execute_callback)
 
     # Callbacks
 
@@ -235,7 +237,7 @@ class ActionServer(ActionWaitable):
         self._logger.debug(f"Executing goal with ID {uuid}")
         goal_handle.begin()
         try:
-            result = await self._execution.run(executor, execute_callback, goal_handle)
+            result = await GoalRun(self._execution, executor).run(execute_callback, goal_handle)
         except Exception as error:  # noqa: BLE001 -- the client gets an empty result
             result = self._action_type.Result()
             self._logger.error(f"Error raised in execute callback: {error}")  # noqa: TRY400 -- rclpy's logger

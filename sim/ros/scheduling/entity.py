@@ -81,7 +81,7 @@ class Entity:
     something to take. ``stuck``: a take failed, so that the entity stays handed out and its group held.
     """
 
-    kind: ClassVar[EntityKind]
+    kind: EntityKind
     rank: ClassVar[int]
     """The position of this kind in the order in which a snapshot is served."""
 

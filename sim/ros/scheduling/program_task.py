@@ -1,4 +1,4 @@
-"""The program's functions that executors run as tasks, such as done-callbacks, on the trace.
+"""The program's functions that executors run as tasks on the trace: done-callbacks, goals' execute callbacks.
 
 A task belongs to no callback group. So that the trace shows it, each such function has an entity in a
 reentrant group of its own: that group admits everything, as if there were none.
@@ -19,18 +19,20 @@ from sim.ros.scheduling.task import Task
 from sim.trace.events import EntityKind
 
 
-class ProgramTask(Entity):
+class TaskEntity(Entity):
     """The entity that stands for a function of the program that an executor runs as a task.
 
     No node has it, and no executor yields it.
     """
 
-    kind = EntityKind.TASK
     rank = -1
 
-    def __init__(self, node: OwnerNode, function: Callable[..., Any]) -> None:
+    def __init__(
+        self, node: OwnerNode, kind: EntityKind, name: str, function: Callable[..., Any] | None
+    ) -> None:
+        self.kind = kind
         self.callback = function
-        super().__init__(node, "", ReentrantCallbackGroup())
+        super().__init__(node, name, ReentrantCallbackGroup())
         node.context.probe.entity_made(self)
 
     def take(self, now: int) -> TakenData | None:
@@ -40,8 +42,13 @@ class ProgramTask(Entity):
     def invoke(self, taken: TakenData) -> None:
         """Do nothing: nothing can be taken."""
 
+    def destroy(self) -> None:
+        """Remove it from the trace. With the host's lock held."""
+        self.destroyed = True
+        self.node.context.probe.entity_gone(self)
 
-def program_task(task: Task[Any], nodes: Callable[[], list[OwnerNode]]) -> ProgramTask | None:
+
+def program_task(task: Task[Any], nodes: Callable[[], list[OwnerNode]]) -> TaskEntity | None:
     """Return the entity of a task's function; None if it is not the program's, or the executor has no node.
 
     It is in the node whose method it is, else in the first one of ``nodes``. With the host's lock held.
@@ -54,9 +61,9 @@ def program_task(task: Task[Any], nodes: Callable[[], list[OwnerNode]]) -> Progr
     if not served:
         return None
     node = next((each for each in served if each is owner), served[0])
-    known: dict[CodeType, ProgramTask] = node._agenda.tasks
+    known: dict[CodeType, TaskEntity] = node._agenda.tasks
     if code not in known:
-        known[code] = ProgramTask(node, function)
+        known[code] = TaskEntity(node, EntityKind.TASK, "", function)
     return known[code]
 
 

@@ -11,7 +11,7 @@ from sim.interpreter.function_marks import calls_the_program
 from sim.ros.scheduling.cycle import Cycle, Work
 from sim.ros.scheduling.entity import Entity, TakenData
 from sim.ros.scheduling.handlers import Handler, awaits, discard
-from sim.ros.scheduling.program_task import ProgramTask, program_task
+from sim.ros.scheduling.program_task import TaskEntity, program_task
 from sim.ros.scheduling.task import Task
 from sim.trace.events import Reason
 
@@ -37,7 +37,7 @@ class CallbackRunner:
         """The executor's cycle."""
         self._probe = executor.context.probe
         self._coroutines: dict[Task[Any], Entity] = {}
-        self._shown: dict[Task[Any], tuple[ProgramTask, int]] = {}
+        self._shown: dict[Task[Any], tuple[TaskEntity, int]] = {}
         """What stands on the trace for tasks that run, and what ran on their threads before."""
         self._running: list[Entity] = []
         self._stopped_at = 0
