@@ -6,12 +6,12 @@ reentrant group of its own: that group admits everything, as if there were none.
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Callable
 from functools import lru_cache
 from types import CodeType
 from typing import Any
 
+from sim.probes.on_path.cbtui_probe.naming import code_of, owner_of
 from sim.probes.own_code import is_written
 from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
 from sim.ros.scheduling.entity import Entity, OwnerNode, TakenData
@@ -54,10 +54,10 @@ def program_task(task: Task[Any], nodes: Callable[[], list[OwnerNode]]) -> TaskE
     It is in the node whose method it is, else in the first one of ``nodes``. With the host's lock held.
     """
     function = task._handler
-    code = function.cr_code if inspect.iscoroutine(function) else getattr(function, "__code__", None)
-    if not isinstance(code, CodeType) or not _is_written(code.co_filename):
+    code = code_of(function)
+    if code is None or not _is_written(code.co_filename):
         return None
-    served, owner = nodes(), getattr(function, "__self__", None)
+    served, owner = nodes(), owner_of(function)
     if not served:
         return None
     node = next((each for each in served if each is owner), served[0])

@@ -183,8 +183,10 @@ class CallbackRunner:
 
     def _task_started(self, task: Task[Any]) -> None:
         """Record that a task of the program begins or continues here. Called with the lock held."""
-        shown = None if task in self._coroutines else program_task(task, self.executor.get_nodes)
-        if shown is None or task._waits_still or task._settled():
+        if task in self._coroutines or task._waits_still or task._settled():
+            return
+        shown = program_task(task, self.executor.get_nodes)
+        if shown is None:
             return
         self._running.append(shown)
         shown.entered_at = self.clock.now()

@@ -6,6 +6,7 @@ import functools
 import inspect
 import sys
 import time
+import weakref
 from typing import TYPE_CHECKING, Any
 
 from .own_lines import awaiting_frames
@@ -52,6 +53,16 @@ class Calls:
     def traced(self, callback: Callable[..., Any], start: Callable[..., None] | None = None) -> Any:
         """Wrap a callback so that its calls are recorded; ``start`` is called with its arguments first."""
         return self._wrapped(callback, start or self.begin, None)
+
+    def traced_coroutine(self, coroutine: Any) -> Any:
+        """Wrap a coroutine so that its steps are recorded; it is closed with what wraps it."""
+
+        async def steps() -> Any:
+            return await coroutine
+
+        traced = self.traced(functools.wraps(coroutine)(steps))()
+        weakref.finalize(traced, coroutine.close)
+        return traced
 
     def traced_with_info(self, callback: Callable[..., Any]) -> Any:
         """Wrap the callback of a subscription so that rclpy also passes the message info.

@@ -14,7 +14,7 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallb
 from rclpy.qos import QoSPolicyKind
 
 from .callbacks import Calls, is_own, is_own_module
-from .naming import written_at
+from .naming import code_of, module_of, owner_of, written_at
 from .parameters import watch_parameters
 from .recorder import now
 from .states import STATE, WatchedEntity, nothing, state_of
@@ -318,15 +318,17 @@ class Entities:
 
         @wraps(create)
         def create_known(executor: Any, callback: Any, *args: Any, **kwargs: Any) -> Any:
-            code = getattr(callback, "__code__", None)
-            owner = getattr(callback, "__self__", None)
-            node = owner if owner in self.nodes else next(iter(executor.get_nodes()), None)
-            if isinstance(code, CodeType) and is_own_module(callback.__module__) and node is not None:
+            code, owner = code_of(callback), owner_of(callback)
+            first = next(iter(executor.get_nodes()), None)
+            node = next((each for each in self.nodes if each is owner), first)
+            if code is not None and is_own_module(module_of(callback)) and node is not None:
                 key = code, id(node)
                 if key not in known:
                     known[key] = WatchedEntity("task")
                     self._know(node, _Execution(), known[key], callback, "")
-                callback = Calls(self._recorder, known[key]).traced(callback)
+                calls = Calls(self._recorder, known[key])
+                trace = calls.traced_coroutine if inspect.iscoroutine(callback) else calls.traced
+                callback = trace(callback)
             return create(executor, callback, *args, **kwargs)
 
         executor_class.create_task = create_known

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import inspect
+from types import CodeType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -12,22 +13,50 @@ if TYPE_CHECKING:
 
 def callback_name(callback: Callable[..., Any]) -> str:
     """The name of a callback on the trace: of the function within partials and decorators."""
-    inner = _innermost(callback)
+    inner = innermost(callback)
     return str(getattr(inner, "__name__", type(inner).__name__))
 
 
-def _innermost(callback: Any) -> Any:
+def innermost(callback: Any) -> Any:
+    """The function, method, coroutine or callable object within partials and decorators."""
+    return inspect.unwrap(_without_arguments(callback))
+
+
+def _without_arguments(callback: Any) -> Any:
     while isinstance(callback, functools.partial):
         callback = callback.func
-    return inspect.unwrap(callback)
+    return callback
+
+
+def owner_of(callback: Any) -> Any:
+    """The object whose method a callback or coroutine is; None for none."""
+    if inspect.iscoroutine(callback):
+        return None if callback.cr_frame is None else callback.cr_frame.f_locals.get("self")
+    return getattr(_without_arguments(callback), "__self__", None)
+
+
+def module_of(callback: Any) -> str:
+    """The name of the module in which a callback or coroutine is written."""
+    inner = innermost(callback)
+    if inspect.iscoroutine(inner):
+        return "" if inner.cr_frame is None else str(inner.cr_frame.f_globals.get("__name__", ""))
+    return str(inner.__module__)
+
+
+def code_of(callback: Any) -> CodeType | None:
+    """The code of a callback or coroutine, within partials and decorators; None without source."""
+    inner = innermost(callback)
+    if inspect.iscoroutine(inner):
+        return inner.cr_code
+    code = getattr(inner, "__code__", None) or getattr(type(inner).__call__, "__code__", None)
+    return code if isinstance(code, CodeType) else None
 
 
 def written_at(callback: Callable[..., Any] | None) -> tuple[str, str, int, int]:
     """The name, file, first and last line of a callback; file and lines are empty without source."""
     if callback is None:
         return "", "", 0, 0
-    inner, name = _innermost(callback), callback_name(callback)
-    code = getattr(inner, "__code__", None) or getattr(type(inner).__call__, "__code__", None)
+    name, code = callback_name(callback), code_of(callback)
     if code is None:
         return name, "", 0, 0
     lines = [line for _, _, line in code.co_lines() if line is not None]
