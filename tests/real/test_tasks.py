@@ -50,7 +50,7 @@ class Tried(Node):
 
 
 @pytest.mark.parametrize("ground", ["model", pytest.param("ros2", marks=programs.needs_ros)])
-@pytest.mark.parametrize("executor", ["SingleThreadedExecutor()"])
+@pytest.mark.parametrize("executor", ["SingleThreadedExecutor()", "Polled(EventsExecutor())"])
 def test_tasks_have_their_calls_and_lines_on_the_trace(tmp_path: Path, executor: str, ground: str) -> None:
     run = programs.run(tmp_path, TASKS, executor, ground=ground, seconds=1.0)
     timeline, window = run.timeline, programs.whole(run.timeline)

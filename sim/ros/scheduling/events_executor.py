@@ -306,6 +306,7 @@ class EventsExecutor(Executor):
         self._stop_if_one_is_enough()
         with self._lock:
             self._runner.begin(task, self._clock.now())
+            self._runner.start(task)
         try:
             self._runner.run(task)
         except Exception as error:

@@ -56,6 +56,8 @@ def install(folder: str) -> None:
     entities.watch(rclpy.node.Node)
     entities.watch_rhythms(rclpy.timer.Timer)
     entities.watch_tasks(rclpy.executors.Executor)
+    if hasattr(rclpy_implementation, "EventsExecutor"):
+        entities.watch_tasks(rclpy_implementation.EventsExecutor)
     entities.watch_publishing(rclpy.publisher.Publisher)
     watch_clients(recorder, rclpy.client.Client)
     watch_services(recorder, rclpy.service.Service, rclpy_implementation)
