@@ -8,6 +8,7 @@ from sim.diagnosis.words import group_of, late_reply, thread_count
 from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import name_of, why_waiting
 from sim.trace.events import Doing, EntityId, EntityKind, Reason, ThreadId
+from sim.trace.figures.timers import just_due
 from sim.trace.figures.waiting import (
     WORTH_TELLING,
     admits_others,
@@ -109,16 +110,20 @@ def _without_decision(timeline: Timeline, at: Nanoseconds, last: Nanoseconds) ->
     A live run stops at a moment before its threads go on, so what they did at the moment before is told, too.
     """
     moment = timeline.moment(at)
-    then = "; ".join((*_sent(timeline, at), *_done(timeline, at)))
+    then = "; ".join((*_sent(timeline, at), *_done(timeline, at), *_due(timeline, at)))
     present = (timeline.position_on(thread, at) for thread in timeline.threads)
     since = max((each.start for each in present if each and each.start > last), default=at)
     before = "; ".join(_done(timeline, since))
-    first = f"nothing happens before {timestamp(at)}"
+    first = f"time goes on to {timestamp(at)}"
     if then:
         first = f"{timestamp(at)}: {then}"
     elif before:
         first = f"{timestamp(since)}: {before}; then {first}"
-    running = dict.fromkeys(name_of(span.entity, timeline) for span in moment.running.values())
+    running = dict.fromkeys(
+        name_of(span.entity, timeline)
+        for thread, span in moment.running.items()
+        if thread not in moment.blocked  # that it waits in its call is told below
+    )
     robot = timeline.robot(at)
     goes_on = [f"{name} still runs" for name in running]
     if robot is not None and max(abs(robot.linear), abs(robot.angular)) >= _MOVES:
@@ -131,7 +136,7 @@ def _waits(timeline: Timeline, at: Nanoseconds, since: Nanoseconds) -> Sequence[
     """Who waits at a moment, and why; for its own last call only if nobody else waits, or from ``since``."""
     left = _left(timeline, at)
     moment = timeline.moment(at)
-    turns = next_in_turn(moment, timeline).items()
+    turns = {**next_in_turn(moment, timeline), **dict.fromkeys(just_due(moment, timeline), at)}.items()
     told_too = [_turn(each, begun, timeline, at) for each, begun in turns if not left or begun >= since]
     calls = [
         late_reply(each, moment, timeline) or _in_its_call(each, timeline)
@@ -159,6 +164,12 @@ def _sent(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
     for name in timeline.names_sent:
         if name not in services and any(each.at == at for each in timeline.sent_on(name)):
             yield f"a message is sent on {name}"
+
+
+def _due(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
+    """How many timers fall due at a moment."""
+    if due := len(just_due(timeline.moment(at), timeline)):
+        yield "a timer falls due" if due == 1 else f"{due} timers fall due"
 
 
 def _done(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
@@ -273,7 +284,7 @@ def _readiness(entity: EntityInfo, span: Span) -> str:
         case EntityKind.TIMER:
             return f"is due, {duration(span.age)} late" if span.age > 0 else "is due"
         case EntityKind.SUBSCRIPTION:
-            return f"has a message, {duration(span.age)} old"
+            return f"has a message, {duration(span.age)} old" if span.age > 0 else "has a message"
         case EntityKind.SERVICE:
             return "has a request"
         case EntityKind.CLIENT:
@@ -350,11 +361,20 @@ def _turn(each: EntityId, since: Nanoseconds, timeline: Timeline, at: Nanosecond
     """Say what a callback that waits for no other one is to take, and when."""
     entity, moment = timeline.entities[each], timeline.moment(at)
     queued, waited = moment.queues[entity.id].depth, moment.at - since
-    is_ready = f"has {queued} queued" if queued else _readied(moment.waiting[each], timeline)
+    is_own = is_held_by_own_call(each, moment, timeline)
+    is_ready = f"has {queued} queued" if queued else f"is due{' again' if is_own else ''}"
+    if each in moment.waiting and not queued:
+        is_ready = _readied(moment.waiting[each], timeline)
     is_ready = "is there" if entity.kind is EntityKind.CLIENT and queued == 1 else is_ready
     lasted = f"{', the next' if queued else ''} for {duration(waited)}" if waited else ""
-    when = "no thread is free" if moment.running and not _idle(moment, timeline) else "it is free to run"
-    when = "its last call still runs" if is_held_by_own_call(each, moment, timeline) else when
+    holders = () if admits_others(each, timeline) else moment.holders.get(entity.group, ())
+    when = "it is free to run"
+    if is_own:
+        when = "its last call still runs"
+    elif holders and _asks_groups(timeline):
+        when = f"{group_of(each, timeline)} held by {name_of(holders[0], timeline)}"
+    elif moment.running and not _idle(moment, timeline):
+        when = "no thread is free"
     return f"{entity.spoken_name} {is_ready}{lasted}: {when}"
 
 
@@ -370,4 +390,6 @@ def _at_rest(timeline: Timeline, at: Nanoseconds) -> str:
         return "nothing else is ready"
     threads, verb = idle + busy, "is" if idle == 1 else "are"
     everybody = {1: "the only thread", 2: "both threads"}.get(threads, f"all {threads} threads")
-    return f"nothing else is ready: {f'{idle} of {threads} threads' if busy else everybody} {verb} idle"
+    if busy:
+        return f"nothing else is ready: {idle} of {threads} threads {verb} idle"
+    return f"nothing is ready: {everybody} {verb} idle"

@@ -119,7 +119,10 @@ def threads_needed(peak: int, count: int, at: Nanoseconds, timeline: Timeline) -
 
 
 def late_reply(blocked: Blocked, moment: Moment, timeline: Timeline) -> str:
-    """Say that a call's reply was taken and its caller not woken, which needs a thread, too; else ""."""
+    """Say that a call's reply was taken and its caller not woken, which needs a thread, too; else "".
+
+    While a thread is free, the caller is woken in the very moment in which its reply is taken.
+    """
     window = Window(blocked.start, moment.at + 1)
     clients = [
         each.id
@@ -132,6 +135,8 @@ def late_reply(blocked: Blocked, moment: Moment, timeline: Timeline) -> str:
         return ""
     who = name_of(blocked.entity, timeline) if blocked.entity else "the program"
     is_full = len(moment.running) >= thread_count(timeline)
+    if taken[0] == moment.at and not is_full:
+        return f"{who} has its reply from {blocked.service}, and is about to go on"
     why = "no thread is free to hand it over" if is_full else "the executor has yet to hand it over"
     return f"{who} has had its reply from {blocked.service} since {timestamp(taken[0])}, but {why}"
 

@@ -159,7 +159,7 @@ def test_a_reply_that_no_thread_hands_over_is_told_as_there() -> None:
     assert there in narration(timeline, ns(2.0))
     assert there not in narration(timeline, ns(1.5))
     assert said(run, 1.5).text == "left has been blocked in the call of /clamp for 500 ms"
-    for at, why in ((1.5, "no reply for 500 ms"), (2.5, "its reply not handed over")):
+    for at, why in ((1.5, "no reply for 500 ms"), (2.5, "its reply is there")):
         scene = scene_of(timeline, ns(at), ns(0.1))
         blocked = next(worker for worker in scene.workers if worker.blocked)
         assert blocked_texts(blocked, scene)[0] == f"blocked in call of /clamp, {why}"

@@ -102,15 +102,79 @@ def test_a_step_to_a_moment_without_a_decision_is_told_at_its_time() -> None:
     run.printed("three", 2.8)
     timeline = told(run, until=2.9)
     assert narration(timeline, ns(1.0), stepped=True) == narration(timeline, ns(1.0))
-    assert narration(timeline, ns(1.5), stepped=True)[0] == "nothing happens before 1.500 s: tick still runs"
+    assert narration(timeline, ns(1.5), stepped=True)[0] == "time goes on to 1.500 s: tick still runs"
     assert narration(timeline, ns(1.8), stepped=True)[0] == "1.800 s: tick has slept, and goes on"
     assert narration(timeline, ns(1.9), stepped=True)[0] == (
-        "1.800 s: tick has slept, and goes on; then nothing happens before 1.900 s: tick still runs"
+        "1.800 s: tick has slept, and goes on; then time goes on to 1.900 s: tick still runs"
     )
     assert narration(timeline, ns(2.5), stepped=True)[0] == "2.500 s: /empty replies"
     assert narration(timeline, ns(2.7), stepped=True)[0] == "2.700 s: a line is written to the log"
     assert narration(timeline, ns(2.8), stepped=True)[0] == "2.800 s: 2 lines are written to the log"
     assert narration(timeline, ns(1.5))[0].startswith("1.000 s: ")
+
+
+def test_timers_that_are_just_due_are_told_before_the_executor_looks() -> None:
+    run = Run()
+    run.executor("MultiThreadedExecutor", 4)
+    node = run.node("/n")
+    once = run.timer(run.exclusive(node), "once", 1.0)
+    ask = run.timer(group := run.exclusive(node), "ask", 1.0)
+    other = run.timer(group, "other", 1.0)
+    again = run.timer(run.reentrant(node), "again", 1.0)
+    run.callback(once, run.thread("Thread-1"), 1.0, 0.5)
+    run.callback(ask, run.thread("Thread-2"), 1.0, 5.0)
+    run.callback(other, run.thread("Thread-3"), 1.0, 0.5)
+    run.callback(again, run.thread("Thread-4"), 1.0, 5.0)
+    timeline = told(run, until=1.9)
+    assert narration(timeline, ns(1.9), stepped=True)[1:] == (
+        "nothing else is ready: 2 of 4 threads are idle",
+    )
+    assert narration(timeline, ns(2.0), stepped=True) == (
+        "2.000 s: 4 timers fall due",
+        "once is due: it is free to run; ask is due again: its last call still runs; "
+        "other is due: group B held by ask; again is due: it is free to run",
+    )
+
+
+def test_a_reply_whose_group_its_caller_keeps_is_not_said_to_be_free_to_run() -> None:
+    run = Run()
+    run.executor("MultiThreadedExecutor", 4)
+    group = run.exclusive(run.node("/n"))
+    pick, thread = run.timer(group, "pick", 5.0), run.thread("Thread-1")
+    reply = run.client(group, "/gripper")
+    run.start(pick, thread, 1.0)
+    run.blocked(run.call("/gripper", 1.0, 1.3, entity=pick), "/gripper", thread, pick, 1.0)
+    run.message(reply, 1.3)
+    assert narration(told(run), ns(1.3), stepped=True) == (
+        "1.300 s: /gripper replies",
+        "reply of /gripper is there: group A held by pick",
+        "pick has waited in its call of /gripper since 1.000 s",
+    )
+    assert narration(told(run), ns(1.2), stepped=True)[0] == "time goes on to 1.200 s", "and not that it runs"
+
+
+def test_a_caller_whose_reply_has_just_been_taken_is_about_to_go_on() -> None:
+    run = Run()
+    run.executor("MultiThreadedExecutor", 2)
+    node, first, second = run.node("/n"), run.thread("Thread-1"), run.thread("Thread-2")
+    left, reply = run.timer(run.exclusive(node), "left", 5.0), run.client(run.exclusive(node), "/clamp")
+    run.start(left, first, 1.0)
+    call = run.call("/clamp", 1.0, 1.3, entity=left)
+    run.blocked(call, "/clamp", first, left, 1.0)
+    run.add(CallbackStarted(ns(1.3), reply, second, call, 0, 0))
+    run.end(reply, second, 1.3)
+    timeline = told(run)
+    assert narration(timeline, ns(1.3))[-1] == "left has its reply from /clamp, and is about to go on"
+    assert narration(timeline, ns(1.4), stepped=True)[-1] == (
+        "left has had its reply from /clamp since 1.300 s, but the executor has yet to hand it over"
+    )
+
+
+def test_the_age_of_a_message_is_told_only_where_it_has_one() -> None:
+    run = Run()
+    heard = run.subscription(run.exclusive(run.node("/n")), "/a", "heard")
+    run.callback(heard, run.thread("MainThread"), 1.0, 1.0)
+    assert "heard has a message, group A" in narration(told(run, until=1.5), ns(1.0))[0]
 
 
 @pytest.mark.parametrize(("threads", "when"), [(2, "it is free to run"), (1, "no thread is free")])
@@ -134,7 +198,7 @@ def test_a_step_to_an_arrival_tells_it_before_the_executor_looks(threads: int, w
 
 def test_a_first_step_to_a_moment_without_an_action_is_told_as_any_other() -> None:
     run = Run()
-    run.timer(run.exclusive(run.node("/n")), "tick", 1.0)
+    run.timer(run.exclusive(run.node("/n")), "tick", 5.0)
     run.log("one", 1.0)
     timeline = told(run)
     assert narration(timeline, ns(1.0), stepped=True)[0] == "1.000 s: a line is written to the log"
@@ -147,7 +211,7 @@ def test_a_step_in_which_the_robot_moves_on_says_how(linear: float, angular: flo
     run.callback(run.timer(run.exclusive(run.node("/n")), "tick", 1.0), run.thread("MainThread"), 1.0, 3.0)
     run.robot(1.0, linear=linear, angular=angular)
     first, *_ = narration(told(run, until=1.5), ns(1.4), stepped=True)
-    assert first == f"nothing happens before 1.400 s: tick still runs, the robot still {does}"
+    assert first == f"time goes on to 1.400 s: tick still runs, the robot still {does}"
 
 
 def test_decisions_of_a_moment_are_told_in_the_order_of_the_trace() -> None:
@@ -418,10 +482,10 @@ def test_who_is_idle_is_told_where_nothing_waits(threads: int, busy: int, idle: 
     run = Run()
     run.executor("MultiThreadedExecutor", threads)
     group = run.exclusive(run.node("/n"))
-    tick = run.timer(group, "tick", 1.0)
+    tick = run.timer(group, "tick", 5.0)
     run.callback(tick, run.thread("ThreadPoolExecutor-0_0"), 1.0, 1.0)
-    moment = 1.0 if busy else 2.0
-    assert narration(told(run, until=moment + 0.1), ns(moment))[1:] == (f"nothing else is ready{idle}",)
+    moment, what = (1.0, "nothing else") if busy else (2.0, "nothing")
+    assert narration(told(run, until=moment + 0.1), ns(moment))[1:] == (f"{what} is ready{idle}",)
 
 
 @given(st.sampled_from(Charset), st.integers(0, ns(14.0)), st.integers(40, 120))

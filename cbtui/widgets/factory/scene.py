@@ -18,7 +18,8 @@ from cbtui.widgets.lanes.rows import (
 )
 from sim.diagnosis.words import thread_count
 from sim.trace.descriptions import mismatch_of
-from sim.trace.events import EntityKind, GroupKind, Reason, ThreadId, TimerCancelled
+from sim.trace.events import EntityKind, GroupKind, Reason, ThreadId
+from sim.trace.figures.timers import TimerTick, tick_of
 from sim.trace.figures.waiting import wait_told
 from sim.trace.model import (
     Blocked,
@@ -77,18 +78,6 @@ class FactoryWorker:
     def begins(self) -> bool:
         """Whether its call has only just begun: later it works, though it may still be seen on its way."""
         return self.stay is WorkerState.COMES and not self.step
-
-
-@dataclass(frozen=True, slots=True)
-class TimerTick:
-    """A timer's time: its next due time, or since when it is due, and the lateness of its last call.
-
-    ``due`` is None if it is unknown.
-    """
-
-    due: Nanoseconds | None
-    late: Nanoseconds
-    is_cancelled: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -314,28 +303,9 @@ class _SceneBuilder:
 
     def _belt(self, entity: EntityInfo) -> Belt:
         wait = wait_told(entity.id, self._moment, self._timeline)
-        tick = self._tick(entity) if entity.kind is EntityKind.TIMER else None
+        tick = tick_of(entity.id, self._now, self._timeline) if entity.kind is EntityKind.TIMER else None
         queue = self._moment.queues.get(entity.id, _NO_QUEUE)
         return Belt(entity, queue, wait, tick, mismatch_of(entity, queue, self._timeline, self._now))
-
-    def _tick(self, timer: EntityInfo) -> TimerTick:
-        """Compute a timer's next due time from its last call, as rcl does: missed ticks are dropped."""
-        if waits := self._moment.waiting.get(timer.id):
-            return TimerTick(waits.since, 0)
-        period = timer.period
-        spans = self._timeline.spans_of(timer.id, Window(self._now - 2 * period, self._now + 1))
-        begun = spans[-1].start if spans else 0
-        cancel = self._timeline.cancel_since(timer.id, begun, self._now)
-        if isinstance(cancel, TimerCancelled):
-            return TimerTick(None, 0, is_cancelled=True)
-        late = spans[-1].age if spans else 0
-        due = begun - late + period if spans else timer.first_due if not self._timeline.begun else None
-        due = due if cancel is None else cancel.t + period
-        if due is None or self._is_over or period <= 0:
-            return TimerTick(None, late)
-        if due < begun:
-            due += (1 + (begun - due) // period) * period
-        return TimerTick(due if due >= self._now else None, late)
 
 
 _NO_QUEUE = Queue(0, 0)

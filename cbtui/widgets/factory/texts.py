@@ -236,7 +236,7 @@ def blocked_texts(worker: FactoryWorker, scene: FactoryScene, *, is_brief: bool 
         return (*who, does, why, why.partition(" ")[2], f"waits {took}", "waits")
     service = blocked.service
     is_there = late_reply(blocked, scene.timeline.moment(scene.now), scene.timeline)
-    why = "its reply not handed over" if is_there else f"no reply for {took}"
+    why = "its reply is there" if is_there else f"no reply for {took}"
     full = (f"blocked in call of {service}, {why}", f"blocked in call of {service} {took}")
     brief = (f"blocked in {service} {took}", f"blocked in call {took}", f"blocked {took}", "blocked")
     return brief if is_brief else (*full, *brief)
