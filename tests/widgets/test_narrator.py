@@ -33,11 +33,11 @@ from sim.trace.events import (
 )
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.timeline import Timeline
-from tests.support.runs import Run, dummy_server_run, ns, shared_group_run, split_groups_run
+from tests.support.runs import Run, ns
 from tests.trace.systems import legal_runs
-from tests.widgets.pictures import told
+from tests.widgets.pictures import dummy_server, shared_group, split_groups, told
 
-RUNS = [told(shared_group_run()), told(split_groups_run()), told(dummy_server_run())]
+RUNS = (shared_group, split_groups, dummy_server)
 
 
 def test_a_start_tells_the_thread_the_reason_the_order_and_the_group() -> None:
@@ -381,7 +381,7 @@ def test_a_callback_inside_another_one_is_not_said_to_have_or_to_leave_a_free_th
 
 
 def test_who_waits_for_a_group_is_told_with_its_holder() -> None:
-    told_at = narration(RUNS[0], ns(6.0))
+    told_at = narration(shared_group(), ns(6.0))
     assert any(
         "odom_callback has waited since 4.0" in line and "group A held by timer" in line for line in told_at
     )
@@ -462,7 +462,7 @@ def test_a_callback_whose_function_says_nothing_is_named_after_its_topic() -> No
 
 
 def test_a_cause_is_told_once_however_many_wait_for_it() -> None:
-    lines = narration(RUNS[0], ns(6.0))
+    lines = narration(shared_group(), ns(6.0))
     assert "".join(lines).count("held by timer_callback") == 1
     assert any("odom_callback has" in line and "scan_callback has" in line for line in lines)
 
@@ -492,11 +492,11 @@ def test_who_is_idle_is_told_where_nothing_waits(threads: int, busy: int, idle: 
 @settings(deadline=None, max_examples=60)
 def test_what_has_no_room_is_told_of_by_an_ellipsis(charset: Charset, at: int, width: int) -> None:
     narrator = Narrator()
-    narrator.timeline, narrator.now, narrator.charset = RUNS[0], at, charset
+    narrator.timeline, narrator.now, narrator.charset = shared_group(), at, charset
     whole, shown = (
         [row[0].text.rstrip() for row in narrator.rows(Size(width, height))] for height in (99, ROWS)
     )
-    words = visible(" ".join(narration(RUNS[0], at)), charset).split()
+    words = visible(" ".join(narration(shared_group(), at)), charset).split()
     assert " ".join(whole).split()[1:] == words, "nothing is cut but by the height"
     is_whole = " ".join(shown).split() == " ".join(whole).split()
     assert is_whole or shown[-1].endswith(GLYPHS[charset].ellipsis)
@@ -519,7 +519,7 @@ def test_nothing_has_happened_in_an_empty_run() -> None:
     assert narration(Timeline(), 0) == ("nothing has happened yet",)
 
 
-@given(st.sampled_from(RUNS), st.integers(0, ns(15.0)))
+@given(st.sampled_from(RUNS).map(lambda timeline: timeline()), st.integers(0, ns(15.0)))
 @settings(deadline=None, max_examples=60)
 def test_any_moment_can_be_told(timeline: Timeline, at: int) -> None:
     lines = narration(timeline, at)

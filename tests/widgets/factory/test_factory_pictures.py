@@ -4,18 +4,14 @@ from cbtui.looks.theme import Charset
 from cbtui.widgets.factory import FactoryPainter
 from sim.trace.events import CallbackAt, Doing
 from sim.trace.timeline import Timeline
-from tests.support.runs import Run, dummy_server_run, ns, shared_group_run, split_groups_run
+from tests.support.runs import Run, ns
 from tests.widgets.factory.scenes import (
     four_workers_one_seat,
     many_groups,
     one_worker_three_areas,
     stuck_in_a_call,
 )
-from tests.widgets.pictures import drawn, plain, told
-
-SHARED = told(shared_group_run())
-SPLIT = told(split_groups_run())
-REENTRANT = told(dummy_server_run())
+from tests.widgets.pictures import drawn, dummy_server, plain, shared_group, split_groups, told
 
 
 def factory(
@@ -25,7 +21,7 @@ def factory(
 
 
 def test_one_seat_starves_the_sensors() -> None:
-    assert factory(SHARED, 12.9, 64, 12) == drawn(
+    assert factory(shared_group(), 12.9, 64, 12) == drawn(
         """
         | 1 worker, 1 seat: 2 callbacks wait for it                      |
         | belts                            areas                         |
@@ -44,7 +40,7 @@ def test_one_seat_starves_the_sensors() -> None:
 
 
 def test_the_same_starving_in_nine_rows_of_ascii() -> None:
-    assert factory(SHARED, 12.9, 78, 9, Charset.ASCII) == drawn(
+    assert factory(shared_group(), 12.9, 78, 9, Charset.ASCII) == drawn(
         """
         | 1 worker, 1 seat: 2 callbacks wait for it  += A ## one seat == 2 wait =+     |
         | odom  10/10 ! lost 168 ---#########[498ms]X|                           |     |
@@ -60,7 +56,7 @@ def test_the_same_starving_in_nine_rows_of_ascii() -> None:
 
 
 def test_one_seat_fits_a_narrow_pane() -> None:
-    assert factory(SHARED, 12.9, 38, 10, Charset.BLOCK) == drawn(
+    assert factory(shared_group(), 12.9, 38, 10, Charset.BLOCK) == drawn(
         """
         | 1 worker, 1 seat: 2 wait for it      |
         |                  ╔═ A one seat ══╗   |
@@ -77,7 +73,7 @@ def test_one_seat_fits_a_narrow_pane() -> None:
 
 
 def test_four_workers_go_round_three_areas() -> None:
-    assert factory(SPLIT, 9.412, 64, 12, Charset.ASCII) == drawn(
+    assert factory(split_groups(), 9.412, 64, 12, Charset.ASCII) == drawn(
         """
         | 4 workers, 3 areas, 1 callback waits for its own last call     |
         |                                += A one seat ============+     |
@@ -96,7 +92,7 @@ def test_four_workers_go_round_three_areas() -> None:
 
 
 def test_three_areas_fit_nine_rows() -> None:
-    assert factory(SPLIT, 9.412, 78, 9) == drawn(
+    assert factory(split_groups(), 9.412, 78, 9) == drawn(
         """
         | 4 workers, 3 areas, 1 callback waits for its own last call                   |
         |                                            ┏━ A ██ one seat ━━━━━━━━━━━┓     |
@@ -112,7 +108,7 @@ def test_three_areas_fit_nine_rows() -> None:
 
 
 def test_three_areas_fit_a_narrow_pane() -> None:
-    assert factory(SPLIT, 9.412, 38, 10, Charset.BLOCK) == drawn(
+    assert factory(split_groups(), 9.412, 38, 10, Charset.BLOCK) == drawn(
         """
         | 4 workers, 3 areas                   |
         | belts              areas             |
@@ -129,7 +125,7 @@ def test_three_areas_fit_a_narrow_pane() -> None:
 
 
 def test_in_a_narrow_pane_the_reason_of_a_wait_stays_before_a_rate_and_how_long_it_lasts() -> None:
-    assert factory(SHARED, 9.412, 44, 6) == drawn(
+    assert factory(shared_group(), 9.412, 44, 6) == drawn(
         """
         | 1 worker, 1 seat    ┏━ A one seat ━━━━━┓   |
         | odom  10/10 ! held ✗┃▐☻ timer▌ 5.4 s   ┃   |
@@ -139,11 +135,11 @@ def test_in_a_narrow_pane_the_reason_of_a_wait_stays_before_a_rate_and_how_long_
         | · MainThread works in A                    |
         """
     )
-    assert "timer 4.9 s: own call ✗┃" in factory(SPLIT, 9.412, 50, 8)
+    assert "timer 4.9 s: own call ✗┃" in factory(split_groups(), 9.412, 50, 8)
 
 
 def test_a_wide_pane_has_large_figures_and_a_yard() -> None:
-    assert factory(SPLIT, 9.412, 104, 20) == drawn(
+    assert factory(split_groups(), 9.412, 104, 20) == drawn(
         r"""
     | 4 workers, 3 areas, 1 callback waits for its own last call                                             |
     | belts                                  areas                               workers                     |
@@ -170,7 +166,7 @@ def test_a_wide_pane_has_large_figures_and_a_yard() -> None:
 
 
 def test_large_figures_are_readable_in_ascii() -> None:
-    assert factory(SHARED, 12.9, 104, 13, Charset.ASCII) == drawn(
+    assert factory(shared_group(), 12.9, 104, 13, Charset.ASCII) == drawn(
         r"""
     | 1 worker, 1 seat: 2 callbacks wait for it                                                              |
     | belts                                  areas                               workers                     |
@@ -267,7 +263,7 @@ def test_one_worker_has_three_areas_in_nine_rows() -> None:
 
 
 def test_two_workers_sit_in_one_open_area() -> None:
-    assert factory(REENTRANT, 5.0005, 78, 9) == drawn(
+    assert factory(dummy_server(), 5.0005, 78, 9) == drawn(
         """
         | 2 workers, 1 open area, no callback waits for another                        |
         | belts                                        areas                           |
@@ -283,7 +279,7 @@ def test_two_workers_sit_in_one_open_area() -> None:
 
 
 def test_two_workers_sit_in_one_open_area_in_block() -> None:
-    assert factory(REENTRANT, 5.0005, 64, 12, Charset.BLOCK) == drawn(
+    assert factory(dummy_server(), 5.0005, 64, 12, Charset.BLOCK) == drawn(
         """
         | 2 workers, 1 open area, no callback waits for another          |
         | belts                            areas                         |
@@ -302,7 +298,7 @@ def test_two_workers_sit_in_one_open_area_in_block() -> None:
 
 
 def test_an_open_area_in_ascii_has_no_wall() -> None:
-    assert factory(REENTRANT, 5.05, 64, 9, Charset.ASCII) == drawn(
+    assert factory(dummy_server(), 5.05, 64, 9, Charset.ASCII) == drawn(
         """
         | 2 workers, 1 open area, no callback waits for another          |
         | belts                            areas                         |
@@ -381,7 +377,7 @@ def test_a_client_is_told_from_the_service_of_its_name_by_its_mark_however_narro
 
 
 def test_before_a_run_is_over_no_worker_was_never_needed() -> None:
-    first_step = told(split_groups_run(), until=1.0)
+    first_step = split_groups(1.0)
     assert "not used yet" in factory(first_step, 1.0, 140, 16)
     assert "never needed" not in factory(first_step, 1.0, 140, 16)
 

@@ -1,5 +1,7 @@
 """Who stands where in the factory: a function of timeline, moment and glance, and of nothing else."""
 
+from functools import cache, partial
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -13,26 +15,26 @@ from sim.trace.events import Reason, TimerCancelled, TimerReset
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from tests.support.properties import examples
-from tests.support.runs import Run, dummy_server_run, ns, shared_group_run, split_groups_run
+from tests.support.runs import Run, ns
 from tests.widgets.factory.scenes import (
     four_workers_one_seat,
     many_groups,
     one_worker_three_areas,
     stuck_in_a_call,
 )
-from tests.widgets.pictures import plain, told
+from tests.widgets.pictures import dummy_server, plain, shared_group, split_groups, told
 
 GLANCE = ns(0.15)
-RUNS = [
-    told(shared_group_run()),
-    told(split_groups_run()),
-    told(dummy_server_run()),
-    four_workers_one_seat(),
-    one_worker_three_areas(),
-    stuck_in_a_call(),
-    many_groups(12),
-    Timeline(),
-]
+RUNS = (
+    shared_group,
+    split_groups,
+    dummy_server,
+    cache(four_workers_one_seat),
+    cache(one_worker_three_areas),
+    cache(stuck_in_a_call),
+    cache(partial(many_groups, 12)),
+    Timeline,
+)
 
 
 def one_call(start: float = 1.0, length: float = 1.0) -> Timeline:
@@ -230,7 +232,7 @@ def test_a_call_that_awaits_in_an_open_area_has_not_ended_and_keeps_no_seat(widt
 
 
 def test_a_timer_that_waits_for_its_own_last_call_is_not_counted_among_those_who_wait() -> None:
-    timeline = told(split_groups_run())
+    timeline = split_groups()
     assert not list(scene_at(timeline, 9.4).waits())
     text = plain(FactoryPainter().paint(timeline, ns(9.4), 104, 20))
     assert "late 4.9 s: its last call still runs" in text
@@ -338,7 +340,7 @@ def test_everybody_in_an_open_area_is_seen_in_a_single_row() -> None:
 
 @settings(max_examples=examples(150), deadline=None)
 @given(
-    st.sampled_from(RUNS),
+    st.sampled_from(RUNS).map(lambda timeline: timeline()),
     st.floats(0, 31),
     st.integers(0, 150),
     st.integers(0, 45),
@@ -354,7 +356,7 @@ def test_a_picture_has_the_size_that_was_asked_for(
     assert charset is not Charset.ASCII or text.isascii()
 
 
-@given(st.sampled_from(RUNS), st.floats(0, 31), st.floats(0, 31))
+@given(st.sampled_from(RUNS).map(lambda timeline: timeline()), st.floats(0, 31), st.floats(0, 31))
 @settings(max_examples=examples(30), deadline=None)
 def test_a_moment_looks_the_same_whatever_was_looked_at_before(
     timeline: Timeline, now: float, other: float
@@ -372,7 +374,7 @@ def test_walls_stand_still_whatever_happens(width: int, height: int) -> None:
         signs = "┏┓┗┛┣┫┃"
         return [(y, x) for y, row in enumerate(rows) for x, sign in enumerate(row) if sign in signs]
 
-    for timeline in RUNS[:2]:
+    for timeline in (shared_group(), split_groups()):
         assert len({tuple(walls(timeline, at / 10)) for at in range(0, 300, 7)}) == 1
 
 

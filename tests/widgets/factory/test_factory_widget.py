@@ -4,8 +4,8 @@ from textual.app import App, ComposeResult
 
 from cbtui.looks.theme import Charset
 from cbtui.widgets.factory import FactoryPainter, FactoryView
-from tests.support.runs import ns, shared_group_run, split_groups_run
-from tests.widgets.pictures import plain, told
+from tests.support.runs import ns, split_groups_run
+from tests.widgets.pictures import plain, shared_group, split_groups
 
 
 class OneWidget(App[None]):
@@ -19,7 +19,7 @@ def lines_of(view: FactoryView) -> list[str]:
 
 async def test_the_factory_draws_on_screen_what_its_painter_paints() -> None:
     app = OneWidget()
-    timeline = told(shared_group_run())
+    timeline = shared_group()
     async with app.run_test(size=(78, 9)) as pilot:
         view = app.query_one(FactoryView)
         view.timeline, view.now = timeline, ns(12.9)
@@ -32,7 +32,7 @@ async def test_a_longer_glance_keeps_workers_walking() -> None:
     app = OneWidget()
     async with app.run_test(size=(78, 9)) as pilot:
         view = app.query_one(FactoryView)
-        view.timeline, view.now = told(split_groups_run()), ns(4.5)
+        view.timeline, view.now = split_groups(), ns(4.5)
         await pilot.pause()
         seated = lines_of(view)
         view.glance = ns(1.0)
@@ -61,7 +61,7 @@ async def test_the_factory_survives_any_size_and_charset() -> None:
     app = OneWidget()
     async with app.run_test(size=(80, 24)) as pilot:
         view = app.query_one(FactoryView)
-        view.timeline, view.now = told(split_groups_run()), ns(9.4)
+        view.timeline, view.now = split_groups(), ns(9.4)
         for width, height in ((140, 40), (1, 1), (38, 10), (250, 70)):
             await pilot.resize_terminal(width, height)
             await pilot.pause()

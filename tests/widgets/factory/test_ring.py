@@ -6,8 +6,7 @@ from textual.app import App, ComposeResult
 from cbtui.widgets.factory import FactoryView
 from sim.trace.timeline import Timeline
 from tests.support.pictures import text_of
-from tests.support.runs import split_groups_run
-from tests.widgets.pictures import told
+from tests.widgets.pictures import split_groups
 
 RING = ("timer_callback", "/a_service_with_a_long_name", "group A", "another_callback", "timer_callback")
 
@@ -21,7 +20,7 @@ class OneWidget(App[None]):
 async def test_the_factory_tells_who_waits_for_whom_in_whole_words(size: tuple[int, int]) -> None:
     app = OneWidget()
     async with app.run_test(size=size) as pilot:
-        factory, timeline = app.query_one(FactoryView), told(split_groups_run(), 9.4)
+        factory, timeline = app.query_one(FactoryView), split_groups(9.4)
         factory.show(timeline, timeline.end, 1.0, RING)
         await pilot.pause()
         words = " ".join(text_of(app).split())

@@ -14,8 +14,7 @@ from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
 from tests.support.goldens import LANES, hold
-from tests.support.runs import shared_group_run
-from tests.widgets.pictures import plain, told
+from tests.widgets.pictures import plain, shared_group, told
 
 
 def everything() -> Timeline:
@@ -57,14 +56,12 @@ def everything() -> Timeline:
     return told(run)
 
 
-EVERYTHING, LESSON = everything(), told(shared_group_run())
-
 PICTURES: dict[str, Callable[[], str]] = {
-    "lanes-everything-80.txt": lambda: picture(EVERYTHING, 80),
-    "lanes-everything-140.txt": lambda: picture(EVERYTHING, 140),
-    "lanes-everything-ascii.txt": lambda: picture(EVERYTHING, 100, Charset.ASCII),
-    "lanes-10-minutes.txt": lambda: picture(LESSON, 80, start=-570.0, end=30.0),
-    "lanes-1-ms.txt": lambda: picture(LESSON, 80, start=24.0, end=24.001),
+    "lanes-everything-80.txt": lambda: picture(everything(), 80),
+    "lanes-everything-140.txt": lambda: picture(everything(), 140),
+    "lanes-everything-ascii.txt": lambda: picture(everything(), 100, Charset.ASCII),
+    "lanes-10-minutes.txt": lambda: picture(shared_group(), 80, start=-570.0, end=30.0),
+    "lanes-1-ms.txt": lambda: picture(shared_group(), 80, start=24.0, end=24.001),
 }
 
 

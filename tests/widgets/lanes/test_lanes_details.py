@@ -8,9 +8,9 @@ from cbtui.widgets.lanes.selection import Selection
 from sim.trace.events import CallbackAt, Doing, Published, Reason, WaitEnded
 from sim.trace.model import Span, Window
 from sim.trace.timeline import Timeline
-from tests.support.runs import Run, dummy_server_run, ns, shared_group_run
+from tests.support.runs import Run, ns
 from tests.widgets.factory.test_factory_pictures import factory
-from tests.widgets.pictures import told
+from tests.widgets.pictures import dummy_server, shared_group, told
 
 ALL = Window(0, ns(1000))
 
@@ -84,7 +84,7 @@ def test_an_earlier_calls_wait_is_not_told_again() -> None:
 
 
 def test_what_still_runs_is_measured_up_to_the_cursor() -> None:
-    timeline = told(shared_group_run(), until=12.9)
+    timeline = shared_group(12.9)
     long = timeline.spans_on(1, Window(ns(5), ns(6)))[0]
     assert "has run since 4.000 s, for 8.9 s" in details_of(timeline, long, ns(12.9)).facts
     assert "has run since 4.000 s, for 2.0 s of 8.9 s" in details_of(timeline, long, ns(6)).facts
@@ -147,7 +147,7 @@ def test_that_no_thread_is_free_is_told_once() -> None:
 
 
 def test_a_service_tells_who_called() -> None:
-    timeline = told(dummy_server_run(), until=8.2)
+    timeline = dummy_server(8.2)
     text = text_of(details_of(timeline, span_of(timeline, "service_callback"), ns(8.2)))
     assert text.startswith("A service_callback on Pool-0_0 | took 5.0 s at 2.550 s | request ")
     call = timeline.calls[0]
@@ -158,7 +158,7 @@ def test_a_service_tells_who_called() -> None:
 
 
 def test_a_wait_tells_what_the_queue_lost_meanwhile() -> None:
-    timeline = told(shared_group_run(), until=12.9)
+    timeline = shared_group(12.9)
     odom = next(each for each in timeline.entities.values() if each.name == "/odom")
     wait = timeline.waits_of(odom.id, Window(ns(12), ns(12.1)))[0]
     assert text_of(details_of(timeline, wait, ns(12.9))) == (
@@ -168,7 +168,7 @@ def test_a_wait_tells_what_the_queue_lost_meanwhile() -> None:
 
 
 def test_a_lane_without_a_bar_says_how_to_find_one() -> None:
-    timeline = told(shared_group_run(), until=1.0)
+    timeline = shared_group(1.0)
     lane = ThreadLane(timeline.threads[1])
     assert details_of_selection(timeline, Selection(lane), 0).title == "MainThread"
 

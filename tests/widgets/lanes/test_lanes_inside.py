@@ -8,8 +8,8 @@ from cbtui.widgets.lanes.rows import ThreadLane
 from sim.trace.events import CallbackAt, Doing
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
-from tests.support.runs import Run, ns, shared_group_run
-from tests.widgets.pictures import last, plain, told
+from tests.support.runs import Run, ns
+from tests.widgets.pictures import last, plain, shared_group
 
 WIDTH = 130
 FRAMES = (("node.py", "outer", 12),)
@@ -55,7 +55,7 @@ def test_a_second_row_takes_no_room_from_lanes() -> None:
 
 
 def test_the_overview_shows_the_whole_run_once_a_part_is_on_screen() -> None:
-    timeline = told(shared_group_run(), until=14.0)
+    timeline = shared_group(14.0)
     assert wanted_rows(timeline, width=WIDTH, window=Window(0, ns(20))) == wanted_rows(timeline)
     window = Window(ns(4), ns(14))
     height = wanted_rows(timeline, width=WIDTH, window=window)
@@ -84,7 +84,7 @@ async def test_a_click_on_the_overview_goes_there() -> None:
     async with app.run_test(size=(WIDTH, 24)) as pilot:
         lanes = app.query_one(Lanes)
         lanes.window, lanes.now = Window(ns(4), ns(14)), ns(14)
-        lanes.timeline = told(shared_group_run(), until=14.0)
+        lanes.timeline = shared_group(14.0)
         await pilot.pause()
         picture = lanes.picture
         assert picture is not None

@@ -19,11 +19,10 @@ from sim.trace.timeline import Timeline
 from tests.support.runs import (
     Run,
     ns,
-    shared_group_run,
 )
 from tests.widgets.factory.test_factory_pictures import factory
 from tests.widgets.lanes.test_lanes_painter import small_run
-from tests.widgets.pictures import drawn, last, plain, told
+from tests.widgets.pictures import drawn, last, plain, shared_group, told
 
 
 def blocked_run() -> Run:
@@ -222,7 +221,7 @@ def test_keys_of_the_person_are_marked_on_the_axis_in_words_where_there_is_room(
 
 @pytest.mark.parametrize(("start", "sign"), [(6.0, "◂cursor"), (1.0, "cursor▸")])
 def test_an_axis_tells_on_which_side_the_cursor_is(start: float, sign: str) -> None:
-    timeline = told(shared_group_run())
+    timeline = shared_group()
     window = Window(ns(start), ns(start + 2))
     axis = plain(LanePainter().paint(timeline, window, ns(4.5), 80, 7).rows).splitlines()[-1]
     assert sign in axis
@@ -230,14 +229,14 @@ def test_an_axis_tells_on_which_side_the_cursor_is(start: float, sign: str) -> N
 
 @pytest.mark.parametrize(("before", "label"), [(0, "now▲"), (1, "cursor▲"), (ns(4.5), "cursor▲")])
 def test_only_the_runs_newest_moment_is_called_now(before: int, label: str) -> None:
-    timeline = told(shared_group_run(), until=12.0)
+    timeline = shared_group(12.0)
     cursor = timeline.end - before
     axis = plain(LanePainter().paint(timeline, Window(ns(2), ns(12)), cursor, 80, 7).rows).splitlines()[-1]
     assert f" {label}" in axis
 
 
 def test_the_selected_lane_is_pointed_at_and_its_bar_stands_out() -> None:
-    timeline = told(shared_group_run(), until=12.9)
+    timeline = shared_group(12.9)
     lane = ThreadLane(timeline.threads[1])
     bar = timeline.spans_on(1, Window(ns(5), ns(6)))[0]
     picture = LanePainter().paint(timeline, *last(10, 12.9), 80, 8, Selection(lane, bar))
@@ -249,7 +248,7 @@ def test_the_selected_lane_is_pointed_at_and_its_bar_stands_out() -> None:
 
 @pytest.mark.parametrize("window", [Window(ns(0), ns(1)), Window(ns(6), ns(16)), Window(ns(12.4), ns(12.9))])
 def test_rows_are_as_wide_as_the_picture_wherever_the_selected_bar_lies(window: Window) -> None:
-    timeline = told(shared_group_run(), until=12.9)
+    timeline = shared_group(12.9)
     path = [ChainStep(StepKind.WAITS, "a", ns(2), ns(3), entity=1)]
     for lane in all_lanes(timeline, "/motor_power"):
         for bar in bars_in(timeline, lane, Window(0, timeline.end))[::40]:
@@ -260,7 +259,7 @@ def test_rows_are_as_wide_as_the_picture_wherever_the_selected_bar_lies(window: 
 
 
 def test_the_steps_of_a_chain_stand_out_on_the_lanes_of_their_callbacks() -> None:
-    timeline = told(shared_group_run(), until=12.9)
+    timeline = shared_group(12.9)
     lane = next(each for each in all_lanes(timeline, "") if isinstance(each, MemberLane))
     steps = [
         ChainStep(StepKind.WAITS, "a", ns(5), ns(7), entity=lane.entity.id),
@@ -279,7 +278,7 @@ def test_the_steps_of_a_chain_stand_out_on_the_lanes_of_their_callbacks() -> Non
 
 
 def test_the_selected_lane_and_its_neighbours_are_shown_however_few_there_is_room_for() -> None:
-    timeline = told(shared_group_run(), until=12.9)
+    timeline = shared_group(12.9)
     every = all_lanes(timeline, "/motor_power")
     for place, lane in enumerate(every):
         shown = (
@@ -290,7 +289,7 @@ def test_the_selected_lane_and_its_neighbours_are_shown_however_few_there_is_roo
 
 
 def test_a_callback_whose_group_has_no_lane_is_labelled_with_its_group() -> None:
-    timeline = told(shared_group_run(), until=12.9)
+    timeline = shared_group(12.9)
     kept = dict.fromkeys(timeline.entities, 0)
     for height in range(3, 12):
         picture = LanePainter().paint(timeline, *last(10, 12.9), 140, height, kept=kept)

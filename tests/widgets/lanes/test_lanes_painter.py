@@ -15,15 +15,22 @@ from sim.trace.timeline import Timeline
 from tests.support.properties import examples
 from tests.support.runs import (
     Run,
-    dummy_server_one_thread_run,
-    dummy_server_run,
     ns,
     shared_group_run,
     split_groups_run,
 )
-from tests.widgets.pictures import drawn, last, plain, told
+from tests.widgets.pictures import (
+    drawn,
+    dummy_server,
+    dummy_server_one_thread,
+    last,
+    plain,
+    shared_group,
+    split_groups,
+    told,
+)
 
-RUNS = [told(shared_group_run()), told(split_groups_run()), told(dummy_server_run()), Timeline()]
+RUNS = (shared_group, split_groups, dummy_server, Timeline)
 
 
 def small_run() -> tuple[Run, int, int, int]:
@@ -35,7 +42,7 @@ def small_run() -> tuple[Run, int, int, int]:
 
 
 def test_one_shared_group_shows_everybody_waiting_for_the_timer() -> None:
-    timeline = told(shared_group_run(), until=12.9)
+    timeline = shared_group(12.9)
     assert plain(LanePainter().paint(timeline, *last(10, 12.9), 80, 8).rows) == drawn(
         """
         |MainThread  │▎▎▎▎▎A timer_callback ███████████████████████████▌│  90% busy      |
@@ -49,7 +56,7 @@ def test_one_shared_group_shows_everybody_waiting_for_the_timer() -> None:
 
 
 def test_words_and_figures_are_of_the_moment_that_is_told_and_bars_go_on() -> None:
-    timeline = told(shared_group_run(), until=12.9)
+    timeline = shared_group(12.9)
     window, now = last(10, 12.9)
     behind = plain(LanePainter().paint(timeline, window, now, 80, 8, told=ns(12.4)).rows)
     assert "odom      │▎▎▎▎▎╱╱ waits 8.4 s: A held by timer_callback ××××│ 10/10! lost 158" in behind
@@ -81,7 +88,7 @@ def test_once_a_call_is_over_its_label_tells_all_its_time_though_it_was_painted_
 
 
 def test_a_label_in_the_past_tells_how_much_of_its_bar_is_over_but_not_if_it_begins_there() -> None:
-    timeline = told(shared_group_run(), until=12.9)
+    timeline = shared_group(12.9)
     window = Window(ns(3.0), ns(12.9))
     shown = plain(LanePainter().paint(timeline, window, ns(4.003), 80, 8).rows)
     assert "odom      │▎▎▎▎▎╱╱ group A held by timer_callback ××" in shown
@@ -122,7 +129,7 @@ def test_a_suspended_call_keeps_its_group_on_the_groups_lane() -> None:
 
 
 def test_the_same_in_ascii_has_no_other_glyph() -> None:
-    timeline = told(shared_group_run(), until=12.9)
+    timeline = shared_group(12.9)
     assert plain(LanePainter(Charset.ASCII).paint(timeline, *last(10, 12.9), 80, 8).rows) == drawn(
         """
         |MainThread  ||||||A timer_callback ###########################||  90% busy      |
@@ -136,7 +143,7 @@ def test_the_same_in_ascii_has_no_other_glyph() -> None:
 
 
 def test_a_call_is_marked_with_the_key_that_makes_such_calls() -> None:
-    timeline = told(dummy_server_run(), until=9.0)
+    timeline = dummy_server(9.0)
     for service, mark in (("/dummy_server_srv", "▲s"), ("/another", "▲")):
         text = plain(LanePainter(service=service).paint(timeline, *last(10, 9.0), 80, 12).rows)
         assert mark in text
@@ -144,7 +151,7 @@ def test_a_call_is_marked_with_the_key_that_makes_such_calls() -> None:
 
 
 def test_split_groups_fit_nine_rows_of_a_small_terminal() -> None:
-    timeline = told(split_groups_run(), until=9.412)
+    timeline = split_groups(9.412)
     assert plain(LanePainter(service="/motor_power").paint(timeline, *last(10, 9.412), 80, 9).rows) == drawn(
         """
         |Pool-0_0    │    ▎  ▎ ▎  ▎ ▎  ▎ ▎  A timer_callback ██████████▎│  55% busy      |
@@ -161,7 +168,7 @@ def test_split_groups_fit_nine_rows_of_a_small_terminal() -> None:
 
 
 def test_a_reentrant_group_shows_how_many_run_at_once() -> None:
-    timeline = told(dummy_server_run(), until=8.2)
+    timeline = dummy_server(8.2)
     assert plain(LanePainter().paint(timeline, *last(10, 8.2), 80, 8).rows) == drawn(
         """
         |Pool-0_0    │              ▎    ▎ ▕A service_callback █████▊  ▎│  50% busy      |
@@ -175,12 +182,12 @@ def test_a_reentrant_group_shows_how_many_run_at_once() -> None:
 
 
 def test_an_open_group_tells_how_many_run_and_wait() -> None:
-    timeline = told(dummy_server_one_thread_run(), until=6.0)
+    timeline = dummy_server_one_thread(6.0)
     assert "│ 1 runs, 1 waits" in plain(LanePainter().paint(timeline, *last(10, 6.0), 80, 8).rows)
 
 
 def test_a_timer_that_found_no_worker_is_marked_late() -> None:
-    timeline = told(dummy_server_one_thread_run(), until=8.2)
+    timeline = dummy_server_one_thread(8.2)
     assert plain(LanePainter().paint(timeline, *last(10, 8.2), 80, 8).rows).splitlines()[3] == drawn(
         "|  timer     │              ▎    ▎    ╲╲ no free worker ╲╲╲╲▎! ▎│ on time        |"
     )
@@ -208,12 +215,12 @@ def test_a_timer_is_cancelled_until_it_is_reset(until: float, status: str) -> No
 @pytest.mark.parametrize("start", [4.0 + place / 50 for place in range(10)])
 def test_a_timer_that_has_just_begun_tells_how_late_whatever_fills_its_column(start: float) -> None:
     window = Window(ns(start), ns(start + 10.0))
-    timer = plain(LanePainter().paint(told(shared_group_run()), window, ns(14.0), 80, 8).rows).splitlines()[4]
+    timer = plain(LanePainter().paint(shared_group(), window, ns(14.0), 80, 8).rows).splitlines()[4]
     assert timer.endswith("was late 9.5 s ")
 
 
 def test_a_wide_picture_names_threads_as_rclpy_does_and_tells_more() -> None:
-    picture = plain(LanePainter().paint(told(split_groups_run(), until=9.412), *last(10, 9.412), 138, 9).rows)
+    picture = plain(LanePainter().paint(split_groups(9.412), *last(10, 9.412), 138, 9).rows)
     assert "ThreadPoolExecutor-0_0 │" in picture
     assert "  0%  not used yet" in picture
     assert "A timer 5.4 s" in picture
@@ -222,7 +229,7 @@ def test_a_wide_picture_names_threads_as_rclpy_does_and_tells_more() -> None:
 
 @settings(max_examples=examples(60), deadline=None)
 @given(
-    st.sampled_from(RUNS),
+    st.sampled_from(RUNS).map(lambda timeline: timeline()),
     st.integers(-ns(5), ns(40)),
     st.integers(1, ns(60)),
     st.integers(0, ns(40)),
@@ -242,7 +249,7 @@ def test_every_picture_has_the_size_that_was_asked_for(
 @settings(max_examples=examples(20), deadline=None)
 @given(st.lists(st.integers(0, ns(30)), min_size=1, max_size=6), st.sampled_from([ns(0.5), ns(10), ns(60)]))
 def test_a_painter_paints_the_same_whatever_it_painted_before(moments: list[int], length: int) -> None:
-    timeline = RUNS[0]
+    timeline = shared_group()
     used = LanePainter()
     for now in moments:
         window = Window(now - length, now)
@@ -250,7 +257,7 @@ def test_a_painter_paints_the_same_whatever_it_painted_before(moments: list[int]
 
 
 def test_lanes_that_fill_frame_by_frame_end_as_if_painted_at_once() -> None:
-    timeline = told(shared_group_run())
+    timeline = shared_group()
     window, now = Window(0, ns(30)), ns(29)
     at_once = LanePainter().paint(timeline, window, now, 100, 14)
     painter = LanePainter(looks=300)
@@ -322,7 +329,7 @@ def test_each_reason_has_its_texture_and_its_words(reason: Reason, words: str) -
 
 
 def test_a_wait_is_told_as_of_the_cursor() -> None:
-    timeline = told(shared_group_run())
+    timeline = shared_group()
     before = plain(LanePainter().paint(timeline, Window(0, ns(30)), ns(10), 140, 7).rows)
     after = plain(LanePainter().paint(timeline, Window(0, ns(30)), ns(26), 140, 7).rows)
     assert "waits 6.0 s of 20.0 s: A held by timer_callback" in before
@@ -330,7 +337,7 @@ def test_a_wait_is_told_as_of_the_cursor() -> None:
 
 
 def test_a_wait_that_begins_at_the_cursor_has_no_length_yet() -> None:
-    timeline = told(shared_group_run())
+    timeline = shared_group()
     (wait, *_) = timeline.waits_of(next(iter(timeline.moment(ns(10)).waiting)), Window(ns(10), ns(11)))
     at_first = plain(LanePainter().paint(timeline, Window(0, ns(30)), wait.start, 140, 7).rows)
     assert "waits 0 s" not in at_first
@@ -338,7 +345,7 @@ def test_a_wait_that_begins_at_the_cursor_has_no_length_yet() -> None:
 
 
 def test_what_lies_after_the_cursor_is_drawn_later_in_ink() -> None:
-    picture = LanePainter().paint(told(shared_group_run()), Window(0, ns(30)), ns(10), 140, 7)
+    picture = LanePainter().paint(shared_group(), Window(0, ns(30)), ns(10), 140, 7)
     bars = [run for run in picture.rows[0] if run.ink.role is Role.BAR]
     assert [run.ink.later for run in bars] == sorted(run.ink.later for run in bars)
     assert {run.ink.later for run in bars} == {False, True}
@@ -357,20 +364,18 @@ def test_a_call_after_the_cursor_has_no_length_yet() -> None:
 
 
 def test_a_short_window_still_shows_the_last_call_that_reaches_into_it() -> None:
-    picture = plain(
-        LanePainter().paint(told(shared_group_run()), Window(ns(9), ns(9.001)), ns(9.001), 80, 7).rows
-    )
+    picture = plain(LanePainter().paint(shared_group(), Window(ns(9), ns(9.001)), ns(9.001), 80, 7).rows)
     assert "A timer_callback ███" in picture
     assert "waits 5.0 s" in picture
 
 
 def test_a_group_of_one_shares_its_lane_with_its_callback() -> None:
-    lanes = LanePainter().paint(RUNS[1], *last(10, 10), 80, 20).lanes
+    lanes = LanePainter().paint(split_groups(), *last(10, 10), 80, 20).lanes
     assert [type(lane) for lane in lanes] == [ThreadLane] * 4 + [SoleLane] * 3 + [ServiceLane]
 
 
 def test_a_call_without_a_reply_says_since_when() -> None:
-    timeline = told(dummy_server_run(), until=5.05)
+    timeline = dummy_server(5.05)
     assert "no reply 2.5 s" in plain(LanePainter().paint(timeline, *last(10, 5.05), 80, 8).rows)
 
 
@@ -420,20 +425,20 @@ def test_a_thread_of_the_programs_own_is_not_said_to_be_unneeded() -> None:
 
 
 def test_where_room_is_short_those_who_wait_and_run_stay() -> None:
-    timeline = told(shared_group_run(), until=12.9)
+    timeline = shared_group(12.9)
     picture = LanePainter().paint(timeline, *last(10, 12.9), 80, 4)
     assert [type(lane) for lane in picture.lanes] == [ThreadLane, GroupLane, MemberLane]
     assert plain(picture.rows).splitlines()[-1].startswith("+2 lanes")
 
 
 def test_the_rows_wanted_are_the_rows_painted() -> None:
-    for timeline in RUNS:
+    for timeline in (each() for each in RUNS):
         wanted = wanted_rows(timeline, "/motor_power")
         assert len(LanePainter(service="/motor_power").paint(timeline, *last(10, 10), 80, 50).rows) == wanted
 
 
 def test_a_millisecond_and_ten_minutes_fill_a_screen() -> None:
-    timeline = told(shared_group_run())
+    timeline = shared_group()
     near = plain(LanePainter().paint(timeline, Window(ns(4.0025), ns(4.0035)), ns(4.0035), 80, 7).rows)
     assert near == drawn(
         """

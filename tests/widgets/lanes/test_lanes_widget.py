@@ -8,7 +8,7 @@ from cbtui.widgets.lanes import Lanes
 from sim.trace.model import Span, Window
 from tests.support.builder import Run
 from tests.support.runs import ns, shared_group_run
-from tests.widgets.pictures import told
+from tests.widgets.pictures import shared_group
 
 
 class OneWidget(App[None]):
@@ -24,7 +24,7 @@ async def test_lanes_show_their_timeline_at_their_time() -> None:
     app = OneWidget()
     async with app.run_test(size=(80, 24)) as pilot:
         lanes = app.query_one(Lanes)
-        lanes.timeline = told(shared_group_run(), until=12.9)
+        lanes.timeline = shared_group(12.9)
         lanes.window, lanes.now = Window(ns(2.9), ns(12.9)), ns(12.9)
         await pilot.pause()
         assert lanes.size.height == 6
@@ -86,7 +86,7 @@ async def test_only_lines_that_changed_are_drawn_again() -> None:
     app = OneWidget()
     async with app.run_test(size=(80, 24)) as pilot:
         lanes = app.query_one(Lanes)
-        lanes.timeline = told(shared_group_run())
+        lanes.timeline = shared_group()
         lanes.window, lanes.now = Window(0, ns(10)), ns(3.0)
         await pilot.pause()
         while lanes.picture is None or not lanes.picture.complete:
@@ -111,7 +111,7 @@ async def test_lanes_survive_any_size_and_charset() -> None:
     app = OneWidget()
     async with app.run_test(size=(80, 24)) as pilot:
         lanes = app.query_one(Lanes)
-        lanes.timeline = told(shared_group_run())
+        lanes.timeline = shared_group()
         for width, height in ((140, 40), (1, 1), (20, 3), (80, 24)):
             await pilot.resize_terminal(width, height)
             await pilot.pause()

@@ -18,8 +18,8 @@ from cbtui.widgets.robot.scene import RobotScene
 from sim.trace.events import ArenaShown, RobotMoved, Scanned
 from sim.trace.timeline import Timeline
 from tests.support.properties import examples
-from tests.support.runs import Run, ns, scan_from, shared_group_run, split_groups_run
-from tests.widgets.pictures import plain, told
+from tests.support.runs import Run, ns, scan_from
+from tests.widgets.pictures import plain, shared_group, split_groups, told
 
 PLAN = ArenaShown(
     0,
@@ -28,7 +28,6 @@ PLAN = ArenaShown(
     robot_radius=0.105,
 )
 _METRES = re.compile(r"(-?[\d.]+) m(?![\w~])")
-SHARED = told(shared_group_run())
 
 
 def robot_at(x: float, y: float, yaw: float) -> RobotMoved:
@@ -63,21 +62,21 @@ def test_the_arrow_points_where_the_robot_heads(degrees: int, arrow: str) -> Non
 
 
 def test_a_fresh_scan_of_the_node_lies_under_the_true_one() -> None:
-    picture = RobotPainter().paint(told(split_groups_run(), until=9.4), ns(9.4), 80, 14).rows
+    picture = RobotPainter().paint(split_groups(9.4), ns(9.4), 80, 14).rows
     roles = [run.ink.role for row in picture[1:-2] for run in row]
     assert Role.TRUE_SCAN in roles
     assert Role.SEEN_SCAN not in roles
 
 
 def test_a_stale_scan_of_the_node_stands_beside_the_true_one_and_its_age_is_told() -> None:
-    picture = RobotPainter().paint(SHARED, ns(9.25), 80, 14).rows
+    picture = RobotPainter().paint(shared_group(), ns(9.25), 80, 14).rows
     assert Role.SEEN_SCAN in [run.ink.role for row in picture[1:-2] for run in row]
     assert "node saw 5.3 s ago" in "".join(run.text for run in picture[0])
     assert Role.WARN in [run.ink.role for run in picture[0]]
 
 
 def test_true_and_believed_scan_differ_without_colours_too() -> None:
-    signs = map_of(SHARED, 9.25)
+    signs = map_of(shared_group(), 9.25)
     assert "." in signs
     assert "x" in signs
 
@@ -101,7 +100,7 @@ def test_a_true_scan_taken_anywhere_falls_on_walls_and_sphere() -> None:
 
 
 def test_the_figures_tell_pose_command_velocity_range_and_motors() -> None:
-    text = plain(RobotPainter().paint(SHARED, ns(9.25), 80, 14).rows)
+    text = plain(RobotPainter().paint(shared_group(), ns(9.25), 80, 14).rows)
     for words in (
         "pose  0.28  0.00 m  -60°",
         "told  0.00 m/s -0.20 rad/s",
@@ -126,7 +125,7 @@ def test_motors_off_and_touching_are_said_in_words() -> None:
 
 @pytest.mark.parametrize("width", [34, 40, 44, 80])
 def test_the_age_of_the_nodes_scan_is_told_at_every_width(width: int) -> None:
-    assert "node saw 10.2 s ago" in plain(RobotPainter().paint(SHARED, ns(14.2), width, 16).rows)
+    assert "node saw 10.2 s ago" in plain(RobotPainter().paint(shared_group(), ns(14.2), width, 16).rows)
 
 
 def test_a_run_without_a_robot_says_so_and_one_that_starts_says_that() -> None:

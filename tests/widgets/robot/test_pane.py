@@ -1,6 +1,7 @@
 """The robot pane as text: maps, where the picture goes, and what shows that the robot ran into something."""
 
 from collections.abc import Iterator
+from functools import cache
 
 import msgspec
 import pytest
@@ -14,11 +15,10 @@ from cbtui.widgets.robot.scene import since_hit
 from sim.trace.events import AnyEvent, RobotMoved
 from sim.trace.timeline import Timeline
 from tests.support.runs import ns, shared_group_run
-from tests.widgets.pictures import drawn, plain, told
-
-SHARED = told(shared_group_run())
+from tests.widgets.pictures import drawn, plain, shared_group
 
 
+@cache
 def touching(start: float, end: float) -> Timeline:
     """The run with a robot that touches something for a while."""
 
@@ -31,8 +31,6 @@ def touching(start: float, end: float) -> Timeline:
     timeline.extend(events())
     return timeline
 
-
-HIT = touching(4.0, 6.0)
 
 MAPS = r"""
     |12 cm/dot  . true scan  x node saw 5.3 s ago|
@@ -93,19 +91,19 @@ def text(
 
 
 def test_surroundings_and_room_stand_side_by_side() -> None:
-    assert text(SHARED, 9.25, 44, 14) == drawn(MAPS)
+    assert text(shared_group(), 9.25, 44, 14) == drawn(MAPS)
 
 
 def test_map_and_picture_stand_side_by_side() -> None:
-    assert text(SHARED, 9.25, 44, 14, RobotViewMode.BOTH) == drawn(BOTH)
+    assert text(shared_group(), 9.25, 44, 14, RobotViewMode.BOTH) == drawn(BOTH)
 
 
 def test_a_hit_shows_as_rays_a_changed_robot_and_edges_of_the_picture() -> None:
-    assert text(HIT, 4.2, 44, 14, RobotViewMode.BOTH) == drawn(HIT_BOTH)
+    assert text(touching(4.0, 6.0), 4.2, 44, 14, RobotViewMode.BOTH) == drawn(HIT_BOTH)
 
 
 def test_only_the_hit_flashes_and_not_the_touching_that_follows() -> None:
-    ages = {now: since_hit(HIT, ns(now)) for now in (3.9, 4.0, 4.2, 4.55, 4.7, 5.9, 6.1)}
+    ages = {now: since_hit(touching(4.0, 6.0), ns(now)) for now in (3.9, 4.0, 4.2, 4.55, 4.7, 5.9, 6.1)}
     told_ages = [ages[now] for now in (4.0, 4.2, 4.55)]
     assert told_ages == [ns(0), ns(0.2), ns(0.55)]
     assert {ages[now] for now in (3.9, 4.7, 5.9, 6.1)} == {None}
@@ -113,21 +111,21 @@ def test_only_the_hit_flashes_and_not_the_touching_that_follows() -> None:
 
 def test_a_robot_that_touches_is_drawn_as_a_warning_while_it_does() -> None:
     def warned(now: float) -> bool:
-        rows = RobotPainter().paint(HIT, ns(now), 44, 14).rows
+        rows = RobotPainter().paint(touching(4.0, 6.0), ns(now), 44, 14).rows
         return any(run.ink.role is Role.WARN and run.text.strip() for row in rows[1:11] for run in row)
 
     assert [warned(now) for now in (3.9, 4.2, 5.5, 6.5)] == [False, True, True, False]
 
 
 def test_the_rays_turn_with_the_runs_time_and_stand_still_without_it() -> None:
-    assert text(HIT, 4.05, 80, 20) == text(HIT, 4.05, 80, 20)
-    assert text(HIT, 4.05, 80, 20).count("*") > 8
-    assert text(HIT, 4.05, 80, 20) != text(HIT, 4.2, 80, 20)
+    assert text(touching(4.0, 6.0), 4.05, 80, 20) == text(touching(4.0, 6.0), 4.05, 80, 20)
+    assert text(touching(4.0, 6.0), 4.05, 80, 20).count("*") > 8
+    assert text(touching(4.0, 6.0), 4.05, 80, 20) != text(touching(4.0, 6.0), 4.2, 80, 20)
 
 
 def test_where_nothing_fits_the_figures_stand_alone() -> None:
     assert arrange(Region(0, 1, 80, 2), RobotViewMode.BOTH) == PaneRegions()
-    assert "motors" in text(SHARED, 9.25, 80, 4)
+    assert "motors" in text(shared_group(), 9.25, 80, 4)
 
 
 @pytest.mark.parametrize("look", RobotViewMode)

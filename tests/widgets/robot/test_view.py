@@ -16,10 +16,9 @@ from lessons.description import Actor
 from sim.camera import Picture, Shot
 from sim.trace.timeline import Timeline
 from tests.support.physics import with_pybullet
-from tests.support.runs import ns, shared_group_run
-from tests.widgets.pictures import plain, told
+from tests.support.runs import ns
+from tests.widgets.pictures import plain, shared_group
 
-SHARED = told(shared_group_run())
 YELLOW = b"\xff\xdb\x00"
 
 
@@ -59,8 +58,8 @@ class OnePane(App[None]):
     def view(self) -> RobotView:
         return self.query_one(RobotView)
 
-    def show(self, now: float, timeline: Timeline = SHARED) -> None:
-        self.view.now, self.view.timeline = ns(now), timeline
+    def show(self, now: float, timeline: Timeline | None = None) -> None:
+        self.view.now, self.view.timeline = ns(now), timeline or shared_group()
 
     def text(self) -> str:
         return "\n".join(self.view.render_line(y).text for y in range(self.view.size.height))
@@ -81,7 +80,7 @@ async def test_the_pane_draws_on_screen_what_its_painter_paints() -> None:
     async with app.run_test(size=(80, 14)) as pilot:
         app.show(9.25)
         await pilot.pause()
-        assert app.text() == plain(RobotPainter().paint(SHARED, ns(9.25), 80, 14).rows)
+        assert app.text() == plain(RobotPainter().paint(shared_group(), ns(9.25), 80, 14).rows)
         await pilot.resize_terminal(3, 2)
         await pilot.pause()
 
@@ -139,7 +138,7 @@ async def test_the_picture_wanted_is_that_of_the_moment_on_screen_and_fits_its_p
         app.show(9.25)
         app.view.look = RobotViewMode.CAMERA
         await pilot.pause()
-        robot, arena = SHARED.robot(ns(9.25)), SHARED.arena
+        robot, arena = shared_group().robot(ns(9.25)), shared_group().arena
         assert robot is not None
         assert arena is not None
         (shot,) = app.cameras[0].wanted
@@ -157,7 +156,7 @@ async def test_pictures_are_wanted_a_few_times_a_second_and_the_last_moment_alwa
             app.show(4.0 + tick / 10)
             await pilot.pause()
         wanted = app.cameras[0].wanted
-        last = SHARED.robot(ns(8.9))
+        last = shared_group().robot(ns(8.9))
         assert last is not None
         await settle(pilot, lambda: wanted[-1].yaw == round(last.yaw, 3))
         assert len(wanted) <= (monotonic() - began) * PICTURES_A_SECOND + 2
@@ -274,7 +273,7 @@ async def test_the_real_camera_shows_the_yellow_sphere() -> None:
     app = RealPane()
     async with app.run_test(size=(80, 14)) as pilot:
         view = app.query_one(RobotView)
-        view.now, view.timeline = ns(3.0), SHARED
+        view.now, view.timeline = ns(3.0), shared_group()
         view.look = RobotViewMode.CAMERA
 
         def yellow() -> bool:

@@ -17,7 +17,7 @@ from tests.support.builder import Run, ns
 from tests.support.console import WIDE, RecordedConsole, settle
 from tests.support.pictures import text_of
 from tests.support.runs import shared_group_run
-from tests.widgets.pictures import plain, told
+from tests.widgets.pictures import plain, shared_group, told
 
 ACTORS = (Actor(figure="belt", follows="timer_callback"), Actor(figure="camera", follows="/odom"))
 WITH_SCENES = [lesson for lesson in lessons() if lesson.scene]
@@ -28,19 +28,19 @@ def scene(timeline: Timeline, at: float, height: int = 6, charset: Charset = Cha
 
 
 def test_a_figure_moves_while_its_callback_runs_and_goes_back_afterwards() -> None:
-    timeline = told(shared_group_run())
+    timeline = shared_group()
     before, *running = [scene(timeline, at)[1][:10] for at in (3.95, 4.1, 5.0, 13.0)]
     assert len({before, *running}) == 4
     assert scene(timeline, 0.1)[1][:10] == scene(timeline, 0.4)[1][:10]
 
 
 def test_a_moment_looks_the_same_however_one_came_there() -> None:
-    whole, part = told(shared_group_run()), told(shared_group_run(), 12.0)
+    whole, part = shared_group(), shared_group(12.0)
     assert scene(whole, 11.5) == scene(part, 11.5)
 
 
 def test_what_a_callback_does_and_why_stands_beside_its_figure() -> None:
-    timeline = told(shared_group_run(), 12.9)
+    timeline = shared_group(12.9)
     first, _, _, second, reason, _ = scene(timeline, 12.9)
     assert first.rstrip().endswith("timer_callback runs 8.9 s")
     assert second.rstrip().endswith("/odom waits 8.9 s")
@@ -52,7 +52,7 @@ def test_what_a_callback_does_and_why_stands_beside_its_figure() -> None:
 def test_where_there_is_room_figures_are_twice_as_large(
     width: int, height: int, row: int, column: int
 ) -> None:
-    timeline = told(shared_group_run(), 12.9)
+    timeline = shared_group(12.9)
     rows = plain(paint_scene(ACTORS, timeline, ns(12.9), width, height, Charset.BRAILLE)).splitlines()
     assert len(rows) == height
     assert {len(each) for each in rows} == {width}
@@ -61,7 +61,7 @@ def test_where_there_is_room_figures_are_twice_as_large(
 
 
 def test_in_few_columns_name_state_and_reason_stand_one_below_the_other() -> None:
-    timeline = told(shared_group_run(), 12.9)
+    timeline = shared_group(12.9)
     rows = plain(paint_scene(ACTORS, timeline, ns(12.9), 34, 9, Charset.BRAILLE)).splitlines()
     assert [row[12:].rstrip() for row in (*rows[:2], *rows[3:5])] == (
         ["timer_callback", "runs 8.9 s", "/odom", "waits 8.9 s"]
@@ -70,7 +70,7 @@ def test_in_few_columns_name_state_and_reason_stand_one_below_the_other() -> Non
 
 
 def test_nothing_is_left_out_silently_where_not_every_figure_has_room() -> None:
-    timeline = told(shared_group_run(), 12.9)
+    timeline = shared_group(12.9)
     first, _, second = scene(timeline, 12.9, height=3)
     assert first.rstrip().endswith("timer_callback runs 8.9 s")
     assert second.strip().startswith("/odom waits 8.9 s: group A held by timer")
@@ -84,7 +84,7 @@ def test_nothing_is_left_out_silently_where_not_every_figure_has_room() -> None:
 @pytest.mark.parametrize("charset", Charset)
 @pytest.mark.parametrize(("width", "height"), [(60, 6), (24, 4), (11, 1), (5, 3), (60, 12), (24, 14)])
 def test_a_scene_has_exactly_its_room(charset: Charset, width: int, height: int) -> None:
-    timeline = told(shared_group_run(), 12.9)
+    timeline = shared_group(12.9)
     rows = paint_scene(ACTORS, timeline, timeline.end, width, height, charset)
     assert len(rows) <= height
     assert {sum(len(run.text) for run in row) for row in rows} == {width}
