@@ -135,39 +135,38 @@ async def test_while_a_trial_stands_still_its_time_goes_on(monkeypatch: pytest.M
         await press(pilot, "escape")
 
 
-@pytest.mark.parametrize(
-    ("answer", "told"),
-    [
-        (Verdict(False), "2 cures tried, none helps here: spin with two threads; let it sleep less."),
-        (
-            Verdict(False, "deadlock"),
-            "2 cures tried, none is enough here: spin with two threads (with it this problem is gone, and "
-            "another one comes: deadlock); let it sleep less (with it this problem is gone, and another one "
-            "comes: deadlock).",
-        ),
-        (
-            Verdict(True, "deadlock"),
-            "A cure was tried, and helps against this; then another one comes: deadlock.",
-        ),
-        (
-            Verdict(None),
-            "Whether a cure helps is not known: the run that was made to try one did not show this problem.",
-        ),
-    ],
-)
-async def test_that_no_cure_helps_is_told_with_what_was_tried(answer: Verdict, told: str) -> None:
+async def test_that_no_cure_helps_is_told_with_what_was_tried() -> None:
     class InVain(Trial):
         def judge(self, told: ExplainedFinding, cure: Cure, note: Callable[[int], object]) -> Verdict:
             return answer
 
+    findings = told_of(shared_group_run().until(TURNED))
     async with console() as (app, pilot):
-        findings = told_of(shared_group_run().until(TURNED))
-        await app.push_screen(DiagnosesScreen(findings, Charset.BRAILLE, InVain()))
-        await app.workers.wait_for_complete()
-        await pilot.pause()
-        shown = " ".join(line.strip("│ ") for line in text_of(app).splitlines())
-        assert f"· {told}" in shown
-        assert ("→ what was tried is not enough here; in all: " in shown) == (answer.helps is False)
+        for answer, told in (
+            (Verdict(False), "2 cures tried, none helps here: spin with two threads; let it sleep less."),
+            (
+                Verdict(False, "deadlock"),
+                "2 cures tried, none is enough here: spin with two threads (with it this problem is gone, "
+                "and another one comes: deadlock); let it sleep less (with it this problem is gone, and "
+                "another one comes: deadlock).",
+            ),
+            (
+                Verdict(True, "deadlock"),
+                "A cure was tried, and helps against this; then another one comes: deadlock.",
+            ),
+            (
+                Verdict(None),
+                "Whether a cure helps is not known: the run that was made to try one did not show this "
+                "problem.",
+            ),
+        ):
+            await app.push_screen(DiagnosesScreen(findings, Charset.BRAILLE, InVain()))
+            await app.workers.wait_for_complete()
+            await pilot.pause()
+            shown = " ".join(line.strip("│ ") for line in text_of(app).splitlines())
+            assert f"· {told}" in shown
+            assert ("→ what was tried is not enough here; in all: " in shown) == (answer.helps is False)
+            await press(pilot, "escape")
 
 
 async def test_where_the_code_is_of_no_simple_shape_it_is_told_that_no_cure_is_offered() -> None:

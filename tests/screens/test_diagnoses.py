@@ -18,6 +18,7 @@ from textual.widgets import OptionList, Static
 from cbtui.app import CbtuiApp
 from cbtui.keys.keymap import STANDARD, Keymap
 from cbtui.looks.theme import Charset
+from cbtui.runs.judged.cures import Verdict
 from cbtui.runs.live.findings import ExplainedFinding, FindingsMonitor
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.linear.narrative import told_finding
@@ -152,18 +153,18 @@ async def test_a_run_without_problems_says_so_and_offers_no_way() -> None:
 async def test_a_key_that_does_nothing_in_the_window_says_why_until_another_row_is_chosen(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    looked, judge = Event(), CureTrial.judge
+    looked = Event()
 
-    def judge_once_looked(trial: CureTrial, *asked: Any) -> Any:
+    def judge_once_looked(_trial: CureTrial, found: ExplainedFinding, *_asked: Any) -> Verdict:
         looked.wait(30.0)
-        return judge(trial, *asked)
+        return Verdict(found.is_problem)
 
     monkeypatch.setattr(CureTrial, "judge", judge_once_looked)
-    async with console(seconds=3.0) as (app, pilot):
-        await press(pilot, "d", "enter")
-        assert "the list is empty" in text_of(app)
     async with console() as (app, pilot):
-        await press(pilot, "d")
+        await app.push_screen(DiagnosesScreen((), Charset.BRAILLE))
+        await press(pilot, "enter")
+        assert "the list is empty" in text_of(app)
+        await press(pilot, "escape", "d")
         chosen = app.screen.query_one(OptionList).highlighted
         await press(pilot, "down", "t")
         assert chosen != app.screen.query_one(OptionList).highlighted

@@ -64,18 +64,21 @@ async def test_the_keys_tell_at_once_whether_the_log_is_followed() -> None:
             await until(pilot, lambda: after in lines_of(app)[-1])  # noqa: B023 it is of this turn
 
 
-@pytest.mark.parametrize("pane", ["2", "5"])
 @pytest.mark.parametrize(("key", "line"), [("slash", LogFilter), ("colon", Prompt)])
 async def test_what_is_typed_in_one_go_goes_where_its_first_key_leads(
-    key: str, line: type[Input], pane: str, monkeypatch: pytest.MonkeyPatch
+    key: str, line: type[Input], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(key_turns, "PATIENCE", 10.0)  # a busy machine is slow, too
     async with console() as (app, pilot):
-        await press(pilot, pane)
-        for each in (key, *"timer"):  # r alone would reset the world
-            app.post_message(Key(each, None if each == key else each))
-        await until(pilot, lambda: app.screen.query_one(line).value == "timer")
-        assert app.screen.query_one(line).has_focus
+        for pane in ("2", "5"):
+            await press(pilot, pane)
+            assert not app.screen.query_one(line).has_focus
+            for each in (key, *"timer"):  # r alone would reset the world
+                app.post_message(Key(each, None if each == key else each))
+            await until(pilot, lambda: app.screen.query_one(line).value == "timer")
+            assert app.screen.query_one(line).has_focus
+            app.screen.query_one(line).value = ""
+            await press(pilot, "escape")
 
 
 async def test_escape_and_a_letter_that_come_at_once_are_no_letter_with_alt(

@@ -2,8 +2,6 @@
 
 from pathlib import Path
 
-import pytest
-
 from cbtui.app import CbtuiApp
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.shown_program import of_processes
@@ -72,31 +70,29 @@ async def test_without_a_set_bool_service_s_says_what_calls_another_one(tmp_path
         assert engines.latest.commands == []
 
 
-@pytest.mark.parametrize(
-    ("key", "label", "sentence"),
-    [
-        ("t", "threads", "These processes are only watched: they can be neither changed nor run again"),
-        ("g", "group", "These processes are only watched"),
-        ("p", "set-up", "These processes are only watched"),
-        ("r", "run again", "These processes are only watched"),
-        ("c", "camera", "There is no robot here whose map or camera could be shown."),
-        ("n", "next", "No lesson follows here: q leads to the menu with all of them."),
-        ("a", "explain", "Only lessons are explained; d lists what went wrong here."),
-    ],
-)
 async def test_on_watched_processes_a_key_that_does_nothing_says_why_and_is_not_in_the_footer(
-    tmp_path: Path, key: str, label: str, sentence: str
+    tmp_path: Path,
 ) -> None:
     hello = Hello(0, PROTOCOL, 17, "3.12.3", "jazzy", ["python3", str(tmp_path / "node.py")], 0)
     program = of_processes(RealRos(watched=str(tmp_path)), [hello])
     app = CbtuiApp(start_program=program, open_session=FakeEngines(dummy_server_run().events, ns(2.0)))
     async with app.run_test(size=WIDE) as pilot:
         await settle(pilot)
-        assert label not in {action.label for action in app.screen.query_one(KeyBar).offered}
-        await pilot.press(key)
-        await settle(pilot)
-        [told] = [note.message for note in app._notifications]
-        assert told.startswith(sentence)
+        for key, label, sentence in (
+            ("t", "threads", "These processes are only watched: they can be neither changed nor run again"),
+            ("g", "group", "These processes are only watched"),
+            ("p", "set-up", "These processes are only watched"),
+            ("r", "run again", "These processes are only watched"),
+            ("c", "camera", "There is no robot here whose map or camera could be shown."),
+            ("n", "next", "No lesson follows here: q leads to the menu with all of them."),
+            ("a", "explain", "Only lessons are explained; d lists what went wrong here."),
+        ):
+            app.clear_notifications()
+            assert label not in {action.label for action in app.screen.query_one(KeyBar).offered}
+            await pilot.press(key)
+            await settle(pilot)
+            [told] = [note.message for note in app._notifications]
+            assert told.startswith(sentence), key
 
 
 async def test_the_guide_tells_what_was_found_and_what_to_try(tmp_path: Path) -> None:
