@@ -97,24 +97,21 @@ async def test_rows_go_between_lanes_and_pane_on_a_small_screen() -> None:
         assert not app.lesson_screen.check_action("wider", ())
 
 
-@pytest.mark.parametrize(
-    ("size", "keys", "told"),
-    [
-        (NARROW, ["ctrl+right"], "In a terminal below 120 × 34 a pane has the whole width."),
-        (NARROW, ["ctrl+down"], "The lanes are all on screen: they need no more rows."),
-        (NARROW, ["ctrl+up"] * 9, "It gets no taller: that is the limit."),
-        (NARROW, ["enter", "ctrl+left"], "The lanes have the whole width."),
-        (WIDE, ["z", "ctrl+left"], "What fills the screen has no other size."),
-    ],
-)
-async def test_a_key_for_sizes_that_changes_none_says_why(
-    size: tuple[int, int], keys: list[str], told: str
-) -> None:
+async def test_a_key_for_sizes_that_changes_none_says_why() -> None:
     app = RecordedConsole("shared-group", EVENTS, 12.9)
-    async with app.run_test(size=size) as pilot:
+    async with app.run_test(size=NARROW) as pilot:
         await settle(pilot)
-        await press(pilot, *keys)
-        assert {note.message for note in app._notifications} == {told}
+        for size, keys, told in (
+            (NARROW, ["ctrl+right"], "In a terminal below 120 × 34 a pane has the whole width."),
+            (NARROW, ["ctrl+down"], "The lanes are all on screen: they need no more rows."),
+            (NARROW, ["ctrl+up"] * 9, "It gets no taller: that is the limit."),
+            (NARROW, ["enter", "ctrl+left"], "The lanes have the whole width."),
+            (WIDE, ["z", "ctrl+left"], "What fills the screen has no other size."),
+        ):
+            await pilot.resize_terminal(*size)
+            app.clear_notifications()
+            await press(pilot, *keys)
+            assert {note.message for note in app._notifications} == {told}
 
 
 @pytest.mark.slow
