@@ -78,7 +78,10 @@ def patient_engines(monkeypatch: pytest.MonkeyPatch) -> None:
 def pytest_sessionstart(session: pytest.Session) -> None:
     """Let each worker of a whole run compile its part of the tests first, so that none compiles all."""
     worker = getattr(session.config, "workerinput", None)
-    if worker is None or session.config.args_source is not pytest.Config.ArgsSource.TESTPATHS:
+    if worker is None:
+        return
+    gc.disable()  # what is imported stays
+    if session.config.args_source is not pytest.Config.ArgsSource.TESTPATHS:
         return
     modules = sorted(path.relative_to(session.config.rootpath) for path in TESTS.rglob("test_*.py"))
     for module in modules[int(worker["workerid"].removeprefix("gw")) :: worker["workercount"]]:
@@ -94,6 +97,7 @@ def pytest_collection_finish(session: pytest.Session) -> None:
     if hasattr(session.config, "workerinput"):
         gc.collect()
         gc.freeze()
+        gc.enable()
         gc.set_threshold(10_000)
 
 
