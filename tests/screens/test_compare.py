@@ -44,7 +44,7 @@ from sim.trace.figures.comparison_sentences import verdict
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from tests.support.builder import ns
-from tests.support.console import NARROW, WIDE, RecordedConsole, settle
+from tests.support.console import NARROW, WIDE, RecordedConsole, settle, whole_lanes
 from tests.support.exercises import until
 from tests.support.pictures import lines_of, text_of
 from tests.support.runs import dummy_server_run, shared_group_run, split_groups_run
@@ -101,6 +101,7 @@ async def drawn(app: ComparingConsole, pilot: Pilot[None]) -> None:
     app.comparison.draw()
     await app.workers.wait_for_complete()
     await pilot.pause()
+    await whole_lanes(pilot)
 
 
 async def press(app: ComparingConsole, pilot: Pilot[None], *keys: str) -> None:

@@ -98,6 +98,11 @@ async def settle(pilot: Pilot[None]) -> None:
             screen.update_findings()
             screen.draw()
     await pilot.pause()
+    await whole_lanes(pilot)
+
+
+async def whole_lanes(pilot: Pilot[None]) -> None:
+    """Wait for the columns that lanes paint in their next frames."""
     async with asyncio.timeout(_LIMIT):
         for lanes in pilot.app.screen.query(Lanes):
             while lanes.picture is not None and not lanes.picture.complete:
