@@ -82,9 +82,16 @@ def must_answer(entity: EntityId, timeline: Timeline) -> bool:
     return known is not None and known.kind in (EntityKind.SERVICE, EntityKind.WAITABLE)
 
 
-def awaiting(subject: str) -> str:
-    """The cure of a callback that waits for a future, as a coroutine."""
-    return f"await the future in an async def {subject} with a callback group of its own"
+def awaiting(entity: EntityId, timeline: Timeline) -> str:
+    """The cure of a callback that waits for a future, as a coroutine; a task is in no group."""
+    own_group = "" if is_task(entity, timeline) else " with a callback group of its own"
+    return f"await the future in an async def {who(entity, timeline)}{own_group}"
+
+
+def is_task(entity: EntityId, timeline: Timeline) -> bool:
+    """Return whether an entity is a function that an executor runs as a task, in no group."""
+    known = timeline.entities.get(entity)
+    return known is not None and known.kind is EntityKind.TASK
 
 
 def group_of(entity: EntityId, timeline: Timeline) -> str:

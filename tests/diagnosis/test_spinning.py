@@ -546,3 +546,66 @@ def test_a_callback_that_spins_for_the_service_of_its_own_node_is_told_of_both_g
     assert [each.replied is not None for each in run_program(tmp_path, cured, 2.2).timeline.calls] == [
         True
     ] * 4
+
+
+SPINS_IN_A_TASK = """
+from functools import partial
+import rclpy
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.node import Node
+from std_srvs.srv import Trigger
+
+
+class Caller(Node):
+    def __init__(self):
+        super().__init__("caller")
+        self.create_service(Trigger, "own", lambda request, response: response)
+        self.client = self.create_client(Trigger, "own")
+        self.create_timer(0.5, self.ask)
+
+    def ask(self):
+        self.client.call_async(Trigger.Request()).add_done_callback(DONE)
+
+    def answered(self, *_):
+        NESTED
+
+
+rclpy.init()
+rclpy.spin(Caller())
+"""
+NESTED = "rclpy.spin_until_future_complete(self, self.client.call_async(Trigger.Request()))"
+
+
+@pytest.mark.parametrize("done", ["self.answered", 'partial(self.answered, "more")'])
+def test_a_done_callback_that_spins_what_runs_it_is_told_as_a_task_in_no_group(
+    done: str, tmp_path: Path
+) -> None:
+    timeline = run_program(
+        tmp_path, SPINS_IN_A_TASK.replace("DONE", done).replace("NESTED", NESTED), 2.0
+    ).timeline
+    (found,) = diagnose(timeline)
+    told = found.explained(timeline)
+    assert told.what == REFUSED.format("spin_until_future_complete").replace("tick", "answered")
+    assert str(told.place) == "node.py:20"
+    assert told.cure == (
+        "after call_async() let answered return and go on in future.add_done_callback(), or await the future "
+        "in an async def answered; to wait inside answered, use client.call(), and spin with "
+        "MultiThreadedExecutor(num_threads=2)"
+    )
+
+
+@pytest.mark.parametrize(
+    ("how", "asks", "spins"),
+    [
+        ("async def", "await self.client.call_async(Trigger.Request())", "rclpy.spin(Caller())"),
+        ("def", "self.client.call(Trigger.Request())", "rclpy.spin(Caller(), MultiThreadedExecutor(2))"),
+    ],
+)
+def test_what_is_told_of_such_a_done_callback_is_a_cure(
+    how: str, asks: str, spins: str, tmp_path: Path
+) -> None:
+    cured = SPINS_IN_A_TASK.replace("DONE", "self.answered").replace("def answered", f"{how} answered")
+    cured = cured.replace("NESTED", asks).replace("rclpy.spin(Caller())", spins)
+    run = run_program(tmp_path, cured, 1.9)
+    assert not diagnose(run.timeline)
+    assert [each.replied is not None for each in run.timeline.calls] == [True] * 6

@@ -107,7 +107,7 @@ class SelfMadeDeadlock(Rule):
                 cure = f"let go of the lock before the await, and {apart}"
         cure = apart if len(both) > 1 else cure or _outside_parameters(found, apart, timeline)
         if not cure and answers:
-            later = awaiting(subject).replace("the future", "the future of call_async()", 1)
+            later = awaiting(found.subject, timeline).replace("the future", "the future of call_async()", 1)
             cure = f"{apart} and let it wait as it does, or {later}"
         if not cure:
             # Where in a busy loop a thread was seen, in a call or between, is chance.
@@ -116,8 +116,8 @@ class SelfMadeDeadlock(Rule):
                 cure = f"use call_async() and return from {subject}, or {apart}"
             else:
                 cure = (
-                    f"return from {subject} and go on in future.add_done_callback(), or {awaiting(subject)}; "
-                    f"to wait inside it, {apart}"
+                    f"return from {subject} and go on in future.add_done_callback(), or "
+                    f"{awaiting(found.subject, timeline)}; to wait inside it, {apart}"
                 )
         threads = 0
         if not awaits and WaitedFor.LOCK not in found.waited_for and _keeps_every_thread(found, timeline):
@@ -173,7 +173,7 @@ class NeedsOneMoreWorker(Rule):
             room = replace(room, own_groups=(found.keeper,))
         other = "use call_async()"
         if must_answer(found.subject, timeline):
-            other = f"after call_async() {awaiting(who(found.subject, timeline))}"
+            other = f"after call_async() {awaiting(found.subject, timeline)}"
         cure = f"{room.words(timeline)}, or {other}"
         place = _line_of(found.subject, found, timeline)
         edits = edits_for_reply(place, found.subject, timeline)

@@ -37,7 +37,9 @@ class AnswerOverlooked(Rule):
         if notice.kind is NoticeKind.EARLY_RESULT:
             what = f"{subject} asks a future for its result() as soon as the request is sent: that is None"
             why = "result() does not wait, and the reply comes to a callback after this one"
-            cure = awaiting(subject)
+            cure = "wait for it by rclpy.spin_until_future_complete(node, future)"
+            if found.subject:
+                cure = awaiting(found.subject, timeline)
             if not must_answer(found.subject, timeline):
                 cure = f"use the result in a done-callback, by future.add_done_callback(), or {cure}"
         elif notice.kind is NoticeKind.REJECTION_OVERLOOKED:

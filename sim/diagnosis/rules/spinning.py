@@ -30,6 +30,7 @@ from sim.diagnosis.words import (
     SPIN_ONCE,
     awaiting,
     group_of,
+    is_task,
     listed,
     must_answer,
     often,
@@ -376,13 +377,18 @@ def _cure(clash: SpinClashed, subject: str, timeline: Timeline) -> str:
     threads = ""
     if threads_for([clash.entity], clash.t, timeline) == 1:
         threads = f", and spin with {with_threads(2)}"
+    awaits, groups = (
+        awaiting(clash.entity, timeline),
+        f", and give {subject} and the client a callback group each",
+    )
+    if is_task(clash.entity, timeline):
+        groups = ""
     if must_answer(clash.entity, timeline):
         return (
-            f"after call_async() {awaiting(subject)}; to wait inside {subject}, use client.call(), and give "
-            f"{subject} a callback group of its own{threads}"
+            f"after call_async() {awaits}; to wait inside {subject}, use client.call(), and give {subject} a "
+            f"callback group of its own{threads}"
         )
     return (
-        f"after call_async() let {subject} return and go on in future.add_done_callback(), or "
-        f"{awaiting(subject)}; to wait inside {subject}, use client.call(), and give {subject} and the "
-        f"client a callback group each{threads}"
+        f"after call_async() let {subject} return and go on in future.add_done_callback(), or {awaits}; to "
+        f"wait inside {subject}, use client.call(){groups}{threads}"
     )
