@@ -7,6 +7,7 @@ import pytest
 from sim.diagnosis import Weight, diagnose
 from sim.diagnosis.edits.clocks import follow_jumps, kept_at
 from sim.diagnosis.edits.code_edit import CodeEdit
+from sim.quantities.nanoseconds import SECOND
 from tests.support.engine_runs import run_program
 
 FOLLOWER = """
@@ -47,6 +48,55 @@ rclpy.spin(node)
 """
     run = run_program(tmp_path, text, 2.0)
     assert not [each for each in diagnose(run.timeline) if each.rule.weight is Weight.PROBLEM]
+
+
+GUARDED = """
+import rclpy
+from rclpy.node import Node
+
+
+class Looper(Node):
+    def __init__(self):
+        super().__init__("looper")
+        self.count = 0
+        self.guard = self.create_guard_condition(self.go_on)
+        self.create_timer(1.0, self.guard.trigger)
+
+    def go_on(self):
+        self.count += 1
+        if self.count < MOST:
+            self.AGAIN()
+
+
+rclpy.init()
+rclpy.spin(Looper())
+"""
+
+
+@pytest.mark.parametrize(
+    ("most", "again", "told"),
+    [
+        ("1e9", "guard.trigger", True),
+        ("2000", "guard.trigger", False),
+        ("1e9", "get_logger", False),
+    ],
+    ids=["without end", "with an end", "not again"],
+)
+def test_a_guard_condition_that_triggers_itself_without_end_is_told_with_the_line(
+    most: str, again: str, told: bool, tmp_path: Path
+) -> None:
+    source = GUARDED.replace("MOST", most).replace("AGAIN", again)
+    timeline = run_program(tmp_path, source, 3.0).timeline
+    found = diagnose(timeline)
+    assert [each.rule.id for each in found] == ["triggers-itself"] * told
+    for each in found:
+        explained = each.explained(timeline)
+        assert str(explained.place) == "node.py:16"
+        assert each.at == SECOND
+        assert explained.for_ever
+        (cure,) = explained.remedies
+        assert cure.edit is not None
+        assert "guard.trigger()" not in (cure.edit.applied(source) or "guard.trigger()")
 
 
 LOOKS = "if self.done_at is None or now >= self.done_at:"

@@ -47,7 +47,13 @@ Problem: TypeAlias = tuple[str, str, str]
 _COMPUTES = "still-computing"
 _LOOPS, _WAITS = "stays-in-loop", "endless-wait"
 _CRASH = "program-raised"
-_TOO_MANY_CALLS = ("always-due", "falls-behind", "service-falls-behind", "never-destroyed")
+_TOO_MANY_CALLS = (
+    "always-due",
+    "triggers-itself",
+    "falls-behind",
+    "service-falls-behind",
+    "never-destroyed",
+)
 """Problems of callbacks that are to be called less often."""
 
 _NAMES = {
@@ -64,6 +70,7 @@ _NAMES = {
     "no-free-worker": "no free thread",
     "behind-others": "wait behind others",
     "always-due": "timer of period 0",
+    "triggers-itself": "guard condition that triggers itself",
     "times-kept": "times of a clock that was set back",
     "clock-never-starts": "clock that never starts",
     "never-destroyed": "timers or the like that pile up",

@@ -1,4 +1,4 @@
-"""Edits of timers that are never due, or always, and whether the timer of a rate stays."""
+"""Edits of timers that are never due, or always; whether a rate's timer stays, a guard triggers itself."""
 
 import ast
 
@@ -15,6 +15,18 @@ def keep_the_fraction(source: SourceEditor, line: int) -> None:
     if len(whole) != 1:
         raise NotSimpleError
     source.replace(whole[0], f"{source.code_of(whole[0].left)} / {source.code_of(whole[0].right)}")
+
+
+@asked_of_file
+def triggered_at(source: SourceEditor, made: int, callback: int) -> int:
+    """Return the line at which the function of a line triggers the guard that another makes; 0 for none."""
+    targets = (each for made_by in source.around(ast.Assign, made) for each in made_by.targets)
+    triggers = {f"{ast.unparse(each)}.trigger" for each in targets}
+    try:
+        calls = source.nodes(ast.Call, source.function_at(callback))
+    except NotSimpleError:
+        return 0
+    return min((each.lineno for each in calls if ast.unparse(each.func) in triggers), default=0)
 
 
 @asked_of_file

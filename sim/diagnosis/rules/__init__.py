@@ -2,7 +2,7 @@
 
 from sim.diagnosis.rule import Rule
 from sim.diagnosis.rules.actions import CancelIgnored, GoalNeverExecuted
-from sim.diagnosis.rules.clocks import AlwaysDue, ClockNeverStarts, TimesKept
+from sim.diagnosis.rules.clocks import AlwaysDue, ClockNeverStarts, TimesKept, TriggersItself
 from sim.diagnosis.rules.deadlock import NeedsOneMoreWorker, SelfMadeDeadlock
 from sim.diagnosis.rules.endless import EndlessWait, StaysInLoop, StillComputing
 from sim.diagnosis.rules.errors import (
@@ -57,6 +57,7 @@ RULES: tuple[Rule, ...] = (
     SpinPastExecutor(),
     AsyncioStarved(),
     AlwaysDue(),
+    TriggersItself(),
     ClockNeverStarts(),
     StillComputing(),
     EndlessWait(),

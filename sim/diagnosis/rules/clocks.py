@@ -1,10 +1,12 @@
-"""Rules on timers that are never due, or always, and on times of a clock that is set back."""
+"""Rules on timers that are never due, or always, as some guards; and on times of a clock that is set back."""
 
+from bisect import bisect_left
 from collections.abc import Iterable, Iterator
 from itertools import chain, islice
 
 from sim.diagnosis.edits.clocks import follow_jumps, kept_at
-from sim.diagnosis.edits.timers import keep_the_fraction, leave_sim_time_off, sim_time_set_at
+from sim.diagnosis.edits.polling import leave_out
+from sim.diagnosis.edits.timers import keep_the_fraction, leave_sim_time_off, sim_time_set_at, triggered_at
 from sim.diagnosis.rule import (
     Explanation,
     Finding,
@@ -22,7 +24,7 @@ from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityId, EntityKind
 from sim.trace.events import TimesKept as Kept
-from sim.trace.model import EntityInfo, Nanoseconds, Window
+from sim.trace.model import EntityInfo, Nanoseconds, Span, Window
 from sim.trace.timeline import Timeline
 
 
@@ -137,9 +139,56 @@ class AlwaysDue(Rule):
             "virtual time no time goes by",
             "give it a period in seconds; // leaves the fraction off: 1 // 50 is 0, and 1 / 50 is 0.02",
             made or place_of(found.subject, timeline),
-            for_ever=timeline.started is not None and timeline.started.clock != "real",
+            for_ever=_stops_time(timeline),
             remedies=by_edit(made, "keep the fraction of the period", keep_the_fraction),
         )
+
+
+class TriggersItself(Rule):
+    """The callback of a guard condition triggers that again, so that it is called again and again."""
+
+    id = "triggers-itself"
+    summary = "the callback of a guard condition triggers it again, without a pause"
+    hides = frozenset(("still-computing",))
+    threshold = 500
+    """Calls within a second that count as no pause."""
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each guard condition that has been called so often lately, if its source shows why."""
+        for entity in view.entities(EntityKind.GUARD):
+            calls = view.timeline.calls_begun(entity.id, Window(0, view.end + 1))
+            is_lately = bool(calls) and view.end - calls[-1].start < SECOND // 10
+
+            def is_often(call: Span, guard: EntityId = entity.id) -> bool:
+                lately = Window(call.start - SECOND, call.start + 1)
+                return view.timeline.calls_of(guard, lately) >= self.threshold
+
+            if is_lately and is_often(calls[-1]) and _triggered_at(entity):
+                begun = max(0, bisect_left(calls, True, key=is_often) - self.threshold + 1)
+                yield Finding(self, calls[begun].start, view.end, entity.id, entity.id, size=len(calls))
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        subject, entity = who(found.subject, timeline), entity_of(found, timeline)
+        place = line_location(entity.file, _triggered_at(entity))
+        return Explanation(
+            f"{subject} triggers its own guard condition: it is called again and again, {found.size} times",
+            "whoever triggers a guard condition lets its callback run once more: the executor never rests, "
+            "and on virtual time no time goes by",
+            "leave that trigger() out, or do the next step in a timer's callback, which comes after a period",
+            place,
+            for_ever=_stops_time(timeline),
+            remedies=by_edit(place, "leave trigger() out", leave_out),
+        )
+
+
+def _triggered_at(guard: EntityInfo) -> int:
+    """Return the line at which the callback of a guard condition triggers that; 0 for none."""
+    file, made = guard.made_at
+    return triggered_at(file, made, guard.first_line) if file == guard.file else 0
+
+
+def _stops_time(timeline: Timeline) -> bool:
+    return timeline.started is not None and timeline.started.clock != "real"
 
 
 def _calls(entity: EntityId, timeline: Timeline) -> int:
