@@ -16,6 +16,8 @@ from sim.trace.timeline import Timeline
 _OFTEN = 20
 """Calls within the threshold from which on their causes are looked for: other callbacks cost nothing."""
 _IN_A_ROW = 200
+_TRIED = 20 * _IN_A_ROW
+"""The latest calls that are looked at: where the trace has lost an event, they seem to lead to nothing."""
 
 
 class FeedbackLoop(Rule):
@@ -26,19 +28,28 @@ class FeedbackLoop(Rule):
 
     id = "feedback-loop"
     summary = "subscriptions hear what they publish themselves, and never come to rest"
+    hides = frozenset(("dropped-messages", "still-computing", "group-starvation", "no-free-worker"))
     threshold: Nanoseconds = SECOND
     """In which so many calls cause one another that nothing else can pace them."""
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
-        """Yield for each loop the subscription that was made first."""
+        """Yield for each loop the subscription that was made first, from the begin of the loop."""
         for each in view.entities(EntityKind.SUBSCRIPTION):
-            for last in view.spans(each.id)[-1:]:
-                recent = Window(last.start - self.threshold, last.start + 1)
-                if view.timeline.calls_of(each.id, recent) >= _OFTEN:
-                    causes = _causes(last, view.timeline)
-                    is_loop = len(causes) == _IN_A_ROW and causes[-1].start >= recent.start
-                    if is_loop and each.id == min(cause.entity for cause in causes):
-                        yield Finding(self, causes[-1].start, last.start, each.id)
+            calls = view.timeline.calls_begun(each.id, Window(0, view.end + 1))
+            for last in calls[-1:-_TRIED:-_IN_A_ROW]:
+                members = {cause.entity for cause in self._loop(last, view.timeline)}
+                if members and each.id == min(members):
+                    first = bisect_left(calls, True, key=lambda call: bool(self._loop(call, view.timeline)))
+                    begun = self._loop(calls[first], view.timeline)[-1].start
+                    culprit = each.id if len(members) == 1 else 0
+                    yield Finding(self, begun, last.start, each.id, culprit)
+                    break
+
+    def _loop(self, last: Span, timeline: Timeline) -> list[Span]:
+        """Return the calls that led to one another, up to the last one; none if something paces them."""
+        recent = Window(last.start - self.threshold, last.start + 1)
+        causes = _causes(last, timeline) if timeline.calls_of(last.entity, recent) >= _OFTEN else []
+        return causes if len(causes) == _IN_A_ROW and causes[-1].start >= recent.start else []
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         last = timeline.spans_of(found.subject, Window(found.until, found.until + 1))[-1]
