@@ -3,8 +3,11 @@
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 
 from sim.diagnosis import diagnose
+from sim.engine.setup import TimedLine
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import Printed
 from tests.support.engine_runs import program_setup, run_program, run_to_end
 
@@ -95,3 +98,79 @@ def test_a_parameter_callback_that_returns_nothing_is_told_with_its_line(tmp_pat
     assert told.what == "asked returned no SetParametersResult, so rclpy refuses what was to be set"
     assert told.cure == "end asked with: return SetParametersResult(successful=True)"
     assert str(told.place) == "node.py:5"
+
+
+ASKS = """
+import rclpy
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup as Group
+from rclpy.executors import MultiThreadedExecutor
+from std_srvs.srv import Trigger
+
+
+def serve(request, response):
+    response.success = True
+    return response
+
+
+def asked(parameters):
+    return SetParametersResult(successful=client.call(Trigger.Request()).success)
+
+
+rclpy.init()
+node = rclpy.create_node("tuned")
+node.declare_parameter("speed", 1.0)
+node.create_service(Trigger, "lamp", serve)
+client = node.create_client(Trigger, "lamp")
+node.add_on_set_parameters_callback(asked)
+rclpy.spin(node)
+"""
+TWO_THREADS = ("spin(node)", "spin(node, MultiThreadedExecutor(2))")
+GROUPS = (
+    (", serve)", ", serve, callback_group=Group())"),
+    ('t(Trigger, "lamp")', 't(Trigger, "lamp", callback_group=Group())'),
+)
+
+
+@pytest.mark.parametrize(
+    ("changes", "needs", "cure"),
+    [
+        (
+            (),
+            "group A, which the setting of parameters holds",
+            "or give serve and the client of /lamp a callback group each, and spin with "
+            "MultiThreadedExecutor(num_threads=2)",
+        ),
+        (
+            GROUPS,
+            "the only thread, which sets parameters",
+            "or give serve and the client of /lamp a callback group each, and spin with "
+            "MultiThreadedExecutor(num_threads=2)",
+        ),
+        (
+            (GROUPS[0], TWO_THREADS),
+            "group B, which the setting of parameters holds",
+            "or give the client of /lamp a callback group of its own",
+        ),
+        ((*GROUPS, TWO_THREADS), "", ""),
+    ],
+    ids=["one group", "one thread", "the client's group", "cured"],
+)
+def test_a_parameter_callback_that_waits_for_what_the_setting_keeps_out_is_told_with_its_line(
+    changes: tuple[tuple[str, str], ...], needs: str, cure: str, tmp_path: Path
+) -> None:
+    source = ASKS
+    for change in changes:
+        source = source.replace(*change)
+    (tmp_path / "node.py").write_text(source)
+    setup = program_setup(tmp_path / "node.py", 4.0)
+    line = TimedLine(SECOND, "ros2 param set /tuned speed 2.0")
+    timeline = run_to_end(replace(setup, lines=(line,))).timeline
+    told = [each.explained(timeline) for each in diagnose(timeline)]
+    assert len(told) == bool(needs)
+    for each in told:
+        assert each.what.startswith("deadlock: asked, a callback of parameters, waits for /lamp for ever; ")
+        assert each.what.endswith(needs)
+        assert each.cure.endswith(cure)
+        assert str(each.place) == "node.py:15"
+        assert each.for_ever

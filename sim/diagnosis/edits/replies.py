@@ -116,6 +116,20 @@ def decides_on_parameters(source: SourceEditor, line: int) -> bool:
     return False
 
 
+@asked_of_file
+def calls_on_parameters(source: SourceEditor) -> tuple[str, int]:
+    """Return the only callback of parameters that waits in ``Client.call``, and the line; "" for none."""
+    adds = (each for each in source.nodes(ast.Call) if "_set_parameters_callback" in ast.unparse(each.func))
+    names = {ast.unparse(argument).rpartition(".")[2] for call in adds for argument in call.args}
+    found = {
+        (function.name, call.lineno)
+        for function in source.nodes(ast.FunctionDef)
+        for call in source.nodes(ast.Call, function)
+        if function.name in names and ast.unparse(call.func).endswith(".call")
+    }
+    return found.pop() if len(found) == 1 else ("", 0)
+
+
 def await_reply(source: SourceEditor, line: int, made: int) -> None:
     """Let what waits for a reply at a line await it, as a coroutine, and so all that calls that.
 

@@ -19,7 +19,7 @@ from sim.diagnosis.rules.locks import LockHeldLong, LocksInTurn
 from sim.diagnosis.rules.messages import DroppedMessages, QosMismatch, SentTooEarly, StaleData
 from sim.diagnosis.rules.names import MisspeltTopic
 from sim.diagnosis.rules.overlooked import AnswerOverlooked, Slip
-from sim.diagnosis.rules.parameters import ParameterOverruled
+from sim.diagnosis.rules.parameters import DeadlockOverParameter, ParameterOverruled
 from sim.diagnosis.rules.services import (
     NobodyOffers,
     ServiceFallsBehind,
@@ -51,6 +51,7 @@ from sim.diagnosis.rules.waiting import BehindOthers, GroupStarvation, NoFreeWor
 RULES: tuple[Rule, ...] = (
     SelfMadeDeadlock(),
     NeedsOneMoreWorker(),
+    DeadlockOverParameter(),
     NestedSpin(),
     SpinInConstructor(),
     SpinNotReached(),

@@ -1,10 +1,15 @@
-"""The rule on parameter callbacks that set what is being set."""
+"""Rules on callbacks of parameters that set what is being set, or wait for what their node has to bring."""
 
 from collections.abc import Iterator
 
-from sim.diagnosis.rule import Explanation, Finding, Rule
-from sim.diagnosis.timeline_view import TimelineView
-from sim.trace.events import Notice, NoticeKind
+from sim.diagnosis.edits.replies import calls_on_parameters
+from sim.diagnosis.rule import Explanation, Finding, Rule, line_location
+from sim.diagnosis.timeline_view import TimelineView, is_worker
+from sim.diagnosis.words import group_of, who, with_threads
+from sim.quantities.nanoseconds import SECOND
+from sim.trace.descriptions import node_name
+from sim.trace.events import EntityId, EntityKind, Notice, NoticeKind, Reason
+from sim.trace.model import Blocked
 from sim.trace.timeline import Timeline
 
 
@@ -33,3 +38,70 @@ class ParameterOverruled(Rule):
             notice.advice,
             None,  # the line stands in the notice
         )
+
+
+class DeadlockOverParameter(Rule):
+    """Parameters are being set from outside, and a callback of them waits for a reply that this keeps out.
+
+    The hidden service that sets them is not on the trace, but holds the node's default group meanwhile.
+    """
+
+    id = "deadlock-over-a-parameter"
+    summary = "a parameter callback waits for a reply that it keeps from coming"
+    hangs_from = 0
+    hides = frozenset(("group-starvation", "no-free-worker", "waited-in-vain"))
+    threshold = SECOND
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each such wait, if a file of the program shows one callback that can be the one."""
+        asked = [each for each in view.now.pending_calls if "/set_parameters" in each.service]
+        for blocked in view.blocked if asked else ():
+            is_long = blocked.end is None and view.end - blocked.start >= self.threshold
+            kept = _kept_by_parameters(blocked, view) if is_long and not blocked.entity else 0
+            file = view.timeline.entities[kept].made_at[0] if kept else ""
+            function, line = calls_on_parameters(file)
+            nodes = {call.service.rpartition("/")[0] for call in asked if call.sent <= blocked.start}
+            if line and node_name(view.timeline.entities[kept].node, view.timeline) in nodes:
+                about, stuck = f"{function} {blocked.service}", frozenset((kept,))
+                yield Finding(
+                    self,
+                    blocked.start,
+                    view.end,
+                    kept,
+                    about=about,
+                    detail=file,
+                    size=line,
+                    thread=blocked.thread,
+                    stuck=stuck,
+                )
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        function, service = found.about.split()
+        subject, client = who(found.subject, timeline), f"the client of {service}"
+        wait = timeline.moment(found.until).waiting.get(found.subject)
+        is_held = wait is None or wait.reason is Reason.GROUP_HELD
+        kept = f"{group_of(found.subject, timeline)}, which the setting of parameters holds"
+        needs = kept if is_held else "the only thread, which sets parameters"
+        own = f"{subject} and {client} a callback group each"
+        if timeline.entities[found.subject].kind is EntityKind.CLIENT:
+            own = f"{client} a callback group of its own"
+        threads = "" if is_worker(found.thread, timeline) else f", and spin with {with_threads(2)}"
+        return Explanation(
+            f"deadlock: {function}, a callback of parameters, waits for {service} for ever; {subject} waits "
+            f"for {needs}",
+            "a node sets parameters that come from outside in a service of its default group",
+            "ask by call_async() in a callback of add_post_set_parameters_callback(); or give "
+            f"{own}{threads}",
+            line_location(found.detail, found.size),
+            for_ever=found.until >= timeline.end,
+        )
+
+
+def _kept_by_parameters(blocked: Blocked, view: TimelineView) -> EntityId:
+    """Return what a call that no callback makes waits for, if what is not on the trace keeps that; else 0."""
+    for entity, wait in view.now.waiting.items():
+        known = view.timeline.entities[entity]
+        is_asked = known.name == blocked.service and known.kind in (EntityKind.SERVICE, EntityKind.CLIENT)
+        if is_asked and not wait.holder:
+            return entity
+    return 0
