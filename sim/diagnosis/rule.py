@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum, StrEnum
 from pathlib import Path
@@ -202,6 +202,14 @@ _RCLPYS = ("/rclpy/timer.py", "/rclpy/time_source.py")
 def is_models(entity: EntityInfo) -> bool:
     """Return whether an entity belongs to the model or to rclpy, such as the timer of a rate."""
     return entity.file.startswith(_MODEL_FOLDER) or entity.file.endswith(_RCLPYS)
+
+
+def made_in(entities: Iterable[EntityInfo]) -> dict[str, set[int]]:
+    """Return the lines at which a program made entities, by file."""
+    made: defaultdict[str, set[int]] = defaultdict(set)
+    for file, line in (each.made_at for each in entities if not is_models(each)):
+        made[file].add(line)
+    return made
 
 
 def place_of(entity: EntityId, timeline: Timeline) -> CodeLocation | None:

@@ -18,6 +18,12 @@ PROGRAMS = Path(__file__).parent / "beginners"
     [
         ("nested_spin", "nested-spin", "rclpy.spin_until_future_complete(self, future)", "add_done_callback"),
         (
+            "two_threads_spin",
+            "nested-spin",
+            "target=rclpy.spin, args=(right,)",
+            "give each thread that spins an executor of its own",
+        ),
+        (
             "spin_in_function",
             "nested-spin",
             "rclpy.spin_until_future_complete(node, future)",

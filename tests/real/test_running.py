@@ -300,6 +300,59 @@ def test_what_waits_behind_a_callback_of_an_events_executor_is_seen(tmp_path: Pa
     assert first.holder == entity_named("tell", timeline)
 
 
+@pytest.mark.parametrize("spin", ["rclpy.spin(self)", "self.executor.spin()"])
+def test_a_spin_inside_a_callback_is_told_as_what_keeps_its_group(spin: str, tmp_path: Path) -> None:
+    body = f"""
+class Tried(Node):
+    def __init__(self):
+        super().__init__("tried")
+        self.create_timer(0.2, self.tick)
+
+    def tick(self):
+        {spin}
+"""
+    timeline = programs.run(tmp_path, body, seconds=3.0).timeline
+    told = next(each.explained(timeline) for each in diagnose(timeline) if each.rule.id == "nested-spin")
+    assert told.what.startswith("deadlock: tick waits in spin() for ever; all callbacks of its node are in")
+    assert told.place is not None
+    assert Path(told.place.file).read_text().splitlines()[told.place.first_line - 1].strip() == spin
+
+
+def test_two_threads_that_spin_one_executor_are_told_with_the_exception_that_ends_one(tmp_path: Path) -> None:
+    path = tmp_path / "tried.py"
+    path.write_text((BEGINNERS / "two_threads_spin.py").read_text())
+    run = run_to_end(msgspec.structs.replace(program_setup(path, 4.0), clock="real", real=RealRos()))
+    first, *_ = (each.explained(run.timeline) for each in diagnose(run.timeline))
+    assert first.what == (
+        "the program spins an executor that another thread spins, by spin(): "
+        "ValueError: generator already executing, which ended that thread"
+    )
+    assert first.place is not None
+    assert "target=rclpy.spin" in path.read_text().splitlines()[first.place.first_line - 1]
+    assert "thread-raised" not in [each.rule.id for each in diagnose(run.timeline)]
+    waits = {
+        wait.reason
+        for each in run.timeline.entities
+        for wait in run.timeline.waits_of(each, whole(run.timeline))
+        if wait.end_at(run.timeline.end) - wait.start > SECOND
+    }
+    assert waits == {Reason.NOBODY_SPINS}, "its spin() has taken the node out again"
+
+
+def test_an_exception_that_ends_a_thread_is_told_as_on_the_model(tmp_path: Path) -> None:
+    setup = program_setup(BEGINNERS / "thread_raises.py", 3.0)
+    on_model, on_ros = (
+        [(each.explained(run.timeline).what, each.explained(run.timeline).place) for each in found]
+        for run in (
+            run_to_end(setup),
+            run_to_end(msgspec.structs.replace(setup, clock="real", real=RealRos())),
+        )
+        for found in [[each for each in diagnose(run.timeline) if each.rule.id == "thread-raised"]]
+    )
+    assert on_model
+    assert on_ros == on_model
+
+
 SLEEPS_BY_A_RATE = """
 class Tried(Node):
     def __init__(self):

@@ -86,6 +86,13 @@ def started_late(source: SourceEditor) -> tuple[int, int]:
     return 0, 0
 
 
+@asked_of_file
+def spun_in_threads(source: SourceEditor) -> tuple[int, ...]:
+    """Return the lines that make threads whose function is one that spins."""
+    makers = (each for each in source.nodes(ast.Call) if any(map(_is_spin, each.keywords)))
+    return tuple(each.lineno for each in makers)
+
+
 def _is_spin(part: ast.keyword) -> bool:
     return part.arg == "target" and ast.unparse(part.value).rpartition(".")[2] == "spin"
 

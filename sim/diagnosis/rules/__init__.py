@@ -32,7 +32,6 @@ from sim.diagnosis.rules.spinning import (
     NestedSpin,
     SpinInConstructor,
     SpinNotReached,
-    SpinPastExecutor,
 )
 from sim.diagnosis.rules.synchronisers import NeverSynchronised
 from sim.diagnosis.rules.threads import GroupsChangeNothing, ThreadsNeverUsed
@@ -45,7 +44,7 @@ from sim.diagnosis.rules.timing import (
 )
 from sim.diagnosis.rules.transforms import LookupKeepsTransform
 from sim.diagnosis.rules.unended import ThreadWaitsForNobody, WaitsForLock
-from sim.diagnosis.rules.unspun import NodeNeverSpins, SpinsTooRarely
+from sim.diagnosis.rules.unspun import NodeNeverSpins, SpinPastExecutor, SpinsTooRarely
 from sim.diagnosis.rules.waiting import BehindOthers, GroupStarvation, NoFreeWorker
 
 RULES: tuple[Rule, ...] = (

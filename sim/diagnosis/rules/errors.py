@@ -20,7 +20,7 @@ from sim.diagnosis.rule import (
     made_at,
     place_of,
 )
-from sim.diagnosis.rules.known_errors import NO_FLOAT, NO_RESULT, known_reason
+from sim.diagnosis.rules.known_errors import NO_FLOAT, NO_RESULT, SPUN_TWICE, known_reason
 from sim.diagnosis.timeline_view import TimelineView, is_worker, pool_of, raised_last
 from sim.diagnosis.words import listed, often, who
 from sim.interpreter.exception_text import UNREADABLE
@@ -233,7 +233,9 @@ class ThreadRaised(Rule):
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
-        """Irrelevant if a callback raised it."""
+        """Irrelevant if a callback raised it, or if it is told with the second spin that it comes from."""
+        if found.detail == SPUN_TWICE and timeline.spin_clashes:
+            return None
         spans = (timeline.spans_of(each, Window(0, found.at + 1))[-1:] for each in timeline.entities)
         raised = any(span.error == found.detail for (span,) in filter(None, spans))
         return None if raised else super().weigh(found, timeline)

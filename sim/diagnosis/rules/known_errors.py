@@ -17,6 +17,9 @@ NO_FLOAT = re.compile(r"AssertionError: The '(\w+)' field must be of type 'float
 NO_RESULT = re.compile(r"AssertionError: The 'result' field must be a sub message of type '(\w+)_Result'")
 """The error of an action's execute callback that returned no result; the group is the action."""
 
+SPUN_TWICE = "ValueError: generator already executing"
+"""The error of an executor that a second thread spins, in rclpy before Jazzy 7.1.9."""
+
 _NODE_PROPERTIES = (
     "clients|context|default_callback_group|guards|publishers|services|subscriptions|timers|waitables"
 )
@@ -112,7 +115,7 @@ _KNOWN = tuple(
             r"make a \1(), set its fields, and publish that",
         ),
         (
-            r"ValueError: generator already executing",
+            SPUN_TWICE,
             r"another thread is in the same generator; where this line spins, it spins the same executor",
             r"spin an executor in one thread only, and let the others wait for that one to end",
         ),

@@ -1,7 +1,6 @@
 """Rules on spinning in the wrong place: inside a callback, and inside a node's constructor."""
 
-from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.flags import setters
@@ -9,8 +8,7 @@ from sim.diagnosis.edits.polling import leave_out
 from sim.diagnosis.edits.spins import (
     await_in_loop,
     never_made,
-    spin_executor,
-    spin_past,
+    spun_in_threads,
     starving_loop,
 )
 from sim.diagnosis.lasting_waits import SETTLES
@@ -21,10 +19,11 @@ from sim.diagnosis.rule import (
     Rule,
     Weight,
     by_edit,
-    is_models,
     line_location,
+    made_in,
 )
 from sim.diagnosis.rules.edits import edits_for_reply, edits_for_spinning, not_reached
+from sim.diagnosis.rules.known_errors import SPUN_TWICE
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import (
     SPIN_ONCE,
@@ -40,8 +39,8 @@ from sim.diagnosis.words import (
 )
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
-from sim.trace.events import Doing, EntityId, EntityKind, GroupKind, ProgramAt, SpinClashed
-from sim.trace.model import Call, EntityInfo, Nanoseconds, Position, Window
+from sim.trace.events import Doing, EntityId, EntityKind, GroupKind, NoticeKind, ProgramAt, SpinClashed
+from sim.trace.model import Call, Nanoseconds, Position, Window
 from sim.trace.timeline import Timeline
 
 
@@ -109,10 +108,12 @@ class NestedSpin(Rule):
             what = f"{subject} spins {runner}, by {clash.function}()"
             why = (
                 "an executor is spun once at a time; rclpy before Jazzy 7.1.9 does not refuse this: "
-                "it may hang, or raise ValueError: generator already executing"
+                f"it may hang, or raise {SPUN_TWICE}"
             )
             if clash.refused:
                 what += ": RuntimeError: Executor is already spinning"
+            elif _killed(clash, timeline):
+                what += f": {SPUN_TWICE}, which ended that thread"
             elif self.weigh(found, timeline) is Weight.REMARK:
                 why += "; cbtui explore looks for an order of threads in which it goes wrong"
         count = found.count
@@ -129,6 +130,9 @@ class NestedSpin(Rule):
             )
             why = "it comes back when a callback of this group has run, and the group lets none in meanwhile"
         place = line_location(clash.file, clash.line)
+        for file in () if place else made_in(timeline.entities.values()):
+            for line in spun_in_threads(file):
+                place = line_location(file, line)
         cure, remedies = _cure(clash, subject, timeline), _remedies(clash, place, timeline)
         what += often(count)
         return Explanation(what, why, cure, place, for_ever=for_ever, remedies=remedies)
@@ -139,7 +143,7 @@ class NestedSpin(Rule):
         assert isinstance(clash, SpinClashed)
         ended = timeline.ended
         is_harmful = clash.entity or clash.node or clash.refused or (ended is not None and ended.failed)
-        if is_harmful or _program_waits(clash, timeline, found.until) >= SECOND:
+        if is_harmful or _killed(clash, timeline) or _program_waits(clash, timeline, found.until) >= SECOND:
             return Weight.PROBLEM
         return Weight.REMARK
 
@@ -189,7 +193,7 @@ class SpinNotReached(Rule):
         ended = timeline.ended
         if timeline.processes_ended or (ended and ended.failed and not ended.time_was_up):
             return  # spin() has raised, or what came after it has
-        for file, lines in _made_in(view.few_entities).items():
+        for file, lines in made_in(view.few_entities).items():
             for name in never_made(file, lines):
                 yield Finding(self, self.threshold, view.end, about=name, detail=file)
 
@@ -197,51 +201,6 @@ class SpinNotReached(Rule):
         what, place, remedies = not_reached(found.detail)
         made = f"no {found.about} has been made: {what}"
         return Explanation(made, _NEVER.format("spin"), SPIN_ONCE, place, remedies=remedies)
-
-
-class SpinPastExecutor(Rule):
-    """An executor with threads was given a node and runs nothing: ``rclpy.spin(node)`` spins another one."""
-
-    id = "spin-past-executor"
-    summary = "rclpy.spin(node) spins another executor than the one that was given the node"
-    hides = frozenset(
-        (
-            "group-starvation",
-            "no-free-worker",
-            "stale-data",
-            "dropped-messages",
-            "groups-change-nothing",
-            "threads-never-used",
-        )
-    )
-    threshold: Nanoseconds = SECOND
-
-    def check(self, view: TimelineView) -> Iterator[Finding]:
-        """Yield it if an executor has had no worker for so long, and a file of the program shows why."""
-        timeline = view.timeline
-        if view.end < self.threshold:
-            return
-        working = {each.executor for each in timeline.threads.values()}
-        idle = any(each.threads > 1 and each.id not in working for each in timeline.executors.values())
-        if not idle or not view.threads_needed:
-            return
-        for file in _made_in(view.few_entities):
-            line, executor = spin_past(file)
-            if line:
-                yield Finding(self, self.threshold, view.end, about=executor, detail=file, size=line)
-
-    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        place = line_location(found.detail, found.size)
-        cure = f"call {found.about}.spin() in its place"
-        return Explanation(
-            f"rclpy.spin() of line {found.size} spins another executor; {found.about}, which was given the "
-            "node and has threads, is never spun",
-            "rclpy.spin(node) takes the node into the global executor, which has one thread: a node is in "
-            "one executor at a time",
-            cure,
-            place,
-            remedies=by_edit(place, cure, spin_executor, found.about),
-        )
 
 
 class AsyncioStarved(Rule):
@@ -258,7 +217,7 @@ class AsyncioStarved(Rule):
         """Yield each such loop, as the files of the program show it, if anything has run."""
         if view.end < self.threshold or not view.threads_needed:
             return
-        for file in _made_in(view.few_entities):
+        for file in made_in(view.few_entities):
             line, function, _ = starving_loop(file)
             if line:
                 yield Finding(self, self.threshold, view.end, about=function, detail=file, size=line)
@@ -275,14 +234,6 @@ class AsyncioStarved(Rule):
             place,
             remedies=by_edit(place, cure, await_in_loop),
         )
-
-
-def _made_in(entities: Iterable[EntityInfo]) -> dict[str, set[int]]:
-    """Return the lines at which a program made entities, by file."""
-    made: defaultdict[str, set[int]] = defaultdict(set)
-    for file, line in (each.made_at for each in entities if not is_models(each)):
-        made[file].add(line)
-    return made
 
 
 _NEVER = "{0}() runs callbacks until the program ends; what is made after it never exists"
@@ -303,6 +254,12 @@ def _program_waits(clash: SpinClashed, timeline: Timeline, at: Nanoseconds) -> N
         return 0
     call = _last_call(clash, timeline)
     return 0 if call and call.replied is None else at - max(program.t, clash.t)
+
+
+def _killed(clash: SpinClashed, timeline: Timeline) -> bool:
+    """Return whether a thread of the program's was ended by what an executor raises that is spun twice."""
+    died = (each for each in timeline.notices if each.kind is NoticeKind.THREAD_DIED and each.t >= clash.t)
+    return any(each.error == SPUN_TWICE for each in died)
 
 
 def _last_call(clash: SpinClashed, timeline: Timeline) -> Call | None:
@@ -358,6 +315,11 @@ def _remedies(clash: SpinClashed, place: CodeLocation | None, timeline: Timeline
 
 
 def _cure(clash: SpinClashed, subject: str, timeline: Timeline) -> str:
+    if not clash.entity and clash.function in ("spin", "spin_once"):
+        return (
+            "let one executor have all nodes, and one thread spin it; or give each thread that spins an "
+            "executor of its own: rclpy.spin(node) spins the same one everywhere"
+        )
     if not clash.entity:
         return (
             "spin each node in one thread only; another thread waits for a future by a threading.Event "

@@ -7,7 +7,9 @@ from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.spins import (
     loop_of_spin_once,
     spin_beside,
+    spin_executor,
     spin_node_beside,
+    spin_past,
     spins_in_turn,
     started_late,
     taken_away,
@@ -21,6 +23,7 @@ from sim.diagnosis.rule import (
     by_edit,
     line_location,
     loop_beside_spin,
+    made_in,
     place_of,
 )
 from sim.diagnosis.rules.edits import not_reached
@@ -54,7 +57,10 @@ class NodeNeverSpins(Rule):
         at = view.timeline.program_at(view.end)
         if at is not None and at.call == "Client.wait_for_service":
             return
-        taken = {clash.node for clash in view.timeline.spin_clashes}
+        clashes = view.timeline.spin_clashes
+        if any(each.function == "spin" and not each.entity and not each.node for each in clashes):
+            return  # one of two threads that spin one executor serves nothing, and the rule on that tells
+        taken = {clash.node for clash in clashes}
         for node, wait in view.unspun.items():
             name = node_name(node, view.timeline)
             since = wait.parts[-1].start
@@ -138,6 +144,51 @@ class NodeNeverSpins(Rule):
         if found.about not in subject:
             subject = f"{subject} of {found.about}"
         return Explanation(f"{subject} {ready}: {what}", why, cure, place, remedies=remedies)
+
+
+class SpinPastExecutor(Rule):
+    """An executor with threads was given a node and runs nothing: ``rclpy.spin(node)`` spins another one."""
+
+    id = "spin-past-executor"
+    summary = "rclpy.spin(node) spins another executor than the one that was given the node"
+    hides = frozenset(
+        (
+            "group-starvation",
+            "no-free-worker",
+            "stale-data",
+            "dropped-messages",
+            "groups-change-nothing",
+            "threads-never-used",
+        )
+    )
+    threshold: Nanoseconds = SECOND
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield it if an executor has had no worker for so long, and a file of the program shows why."""
+        timeline = view.timeline
+        if view.end < self.threshold:
+            return
+        working = {each.executor for each in timeline.threads.values()}
+        idle = any(each.threads > 1 and each.id not in working for each in timeline.executors.values())
+        if not idle or not view.threads_needed:
+            return
+        for file in made_in(view.few_entities):
+            line, executor = spin_past(file)
+            if line:
+                yield Finding(self, self.threshold, view.end, about=executor, detail=file, size=line)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        place = line_location(found.detail, found.size)
+        cure = f"call {found.about}.spin() in its place"
+        return Explanation(
+            f"rclpy.spin() of line {found.size} spins another executor; {found.about}, which was given the "
+            "node and has threads, is never spun",
+            "rclpy.spin(node) takes the node into the global executor, which has one thread: a node is in "
+            "one executor at a time",
+            cure,
+            place,
+            remedies=by_edit(place, cure, spin_executor, found.about),
+        )
 
 
 class SpinsTooRarely(KeptWaiting):

@@ -62,6 +62,11 @@ class Executors:
         known: Spinner | None = None if executor is None else self._spinners.get(executor)
         return known
 
+    def serving(self, node: Any) -> Spinner | None:
+        """The state of the executor that has a node, which only the executor knows; None for none."""
+        executor = node.executor
+        return self.spinner_of(executor) if executor is not None and node in executor.get_nodes() else None
+
     def all(self) -> list[Spinner]:
         """The states of all executors. Thread-safe: the list is copied at once."""
         return list(self._spinners.data.values())
@@ -123,6 +128,9 @@ class Executors:
         base.wait_for_ready_callbacks = wait_for_ready_callbacks
         self._watch_spinning(base, "spin", _itself)
         self._watch_spinning(base, "spin_until_future_complete", _itself)
+        for each in (executors.SingleThreadedExecutor, pool_class):
+            self._watch_spinning(each, "spin_once", _itself)
+            self._watch_spinning(each, "spin_once_until_future_complete", _itself)
 
         def of_spin(node: Any, executor: Any = None) -> Any:  # noqa: ARG001 - it may come by its keyword
             return executor or rclpy.get_global_executor()
@@ -162,26 +170,34 @@ class Executors:
             single.__new__ = staticmethod(new)
 
     def _watch_spinning(self, owner: Any, name: str, executor_of: Callable[..., Any]) -> None:
-        """Note that an executor is spun while a spinning function runs; a C++ executor shows no more."""
+        """Note that an executor is spun while a spinning function runs; a C++ executor shows no more.
+
+        One that another such function calls is left alone.
+        """
         spin = getattr(owner, name)
 
         @wraps(spin)
         def spin_known(*args: Any, **kwargs: Any) -> Any:
+            here = self._recorder.here
+            if here.spins_in == here.entity:
+                return spin(*args, **kwargs)
             executor = executor_of(*args, **kwargs)
             spinner = self._spinners.get(executor) or self._know(executor, 1)
-            here = self._recorder.here
             outer, here.spinner = here.spinner, spinner
             is_second = outer is not spinner and not here.entity and spinner.spins > 0
-            if (is_second or (here.entity and outer is spinner)) and (call := _call_into_rclpy())[0]:
-                self._recorder.put("spin_clash", now(), here.entity, 0, *call, False)
+            if is_second or (here.entity and outer is spinner):
+                function, *place = _call_into_rclpy()
+                self._recorder.put("spin_clash", now(), here.entity, 0, function or name, *place, False)
             if is_second:
                 spinner.seconds.add(get_ident())
             spinner.spins += 1
+            within, here.spins_in = here.spins_in, here.entity
             try:
                 with UNSEEN:
                     return spin(*args, **kwargs)
             finally:
                 spinner.spins -= 1
+                here.spins_in = within
                 if is_second:
                     spinner.seconds.discard(get_ident())
                 spinner.spun_at = now()

@@ -6,6 +6,7 @@ import os
 import sys
 import threading
 from pathlib import Path
+from traceback import walk_tb
 from typing import Any
 
 from . import CHANGES
@@ -64,6 +65,7 @@ def install(folder: str) -> None:
     _watch_log(recorder, rclpy_implementation)
     _watch_tasks(rclpy.task.Task)
     _watch_end(recorder, executors)
+    _watch_threads(recorder, rclpy.executors.ExternalShutdownException)
 
 
 def _watch_log(recorder: Recorder, rclpy_implementation: Any) -> None:
@@ -117,3 +119,25 @@ def _watch_end(recorder: Recorder, executors: Executors) -> None:
         report(kind, error, error.__traceback__)
 
     sys.excepthook = report_known
+
+
+def _watch_threads(recorder: Recorder, shut_down: type[Exception]) -> None:
+    """Record the exceptions that end threads, unless that is how the end of the run ends one that spins."""
+    report = threading.excepthook
+
+    def report_known(failed: threading.ExceptHookArgs) -> None:
+        error = failed.exc_value
+        if isinstance(error, Exception) and not isinstance(error, shut_down):
+            leave_out_probe(error)
+            text, file, line = raised_at(error)
+            if not any(is_own(frame) for frame, _ in walk_tb(error.__traceback__)):
+                file, line = "", 0
+            where = f"{Path(file).name}:{line}: " if file else ""
+            name = "a thread" if failed.thread is None else failed.thread.name
+            told = f"{where}{text}; {name} ended by it, and the rest goes on"
+            recorder.put(
+                *("notice", now(), "ERROR", told, 0, False, "thread died", "", ""), (file, line), text
+            )
+        report(failed)
+
+    threading.excepthook = report_known

@@ -20,7 +20,7 @@ now = time.monotonic_ns
 class Here:
     """The state of one thread."""
 
-    __slots__ = ("blocks", "entity", "executor", "sent", "spinner", "thread")
+    __slots__ = ("blocks", "entity", "executor", "sent", "spinner", "spins_in", "thread")
 
     def __init__(self) -> None:
         self.thread = 0
@@ -30,6 +30,8 @@ class Here:
         """The executor whose worker the thread is, 0 for one of the program's own threads."""
         self.spinner: Any = None
         """The state of the executor that the thread spins or works for."""
+        self.spins_in = -1
+        """The entity in whose callback the thread called a spinning function, 0 for none; -1: in no such."""
         self.sent = 0
         """When the request that the thread has taken was sent, in nanoseconds since 1970; 0: not known."""
         self.blocks = 0

@@ -51,7 +51,7 @@ class Waits:
         self._waiting = waiting
 
     def _look_at(self, node: Any) -> set[WatchedEntity]:
-        spinner = self._executors.spinner_of(node.executor)
+        spinner = self._executors.serving(node)
         found: dict[WatchedEntity, int] = {}
         reasons: dict[WatchedEntity, tuple[str, int, bool]] = {}
         unsure: list[tuple[str, Any, WatchedEntity]] = []
