@@ -74,6 +74,11 @@ class GroupInfo:
     """Whether the program made it; else a change to the run did."""
 
     @property
+    def is_open(self) -> bool:
+        """Whether it admits every callback: it is reentrant, or stands for no group."""
+        return self.kind in (GroupKind.REENTRANT, GroupKind.NONE)
+
+    @property
     def letter(self) -> str:
         """Its letter by its place, from 0: A, B, … Z, A2, B2, …"""
         turn, within = divmod(self.place, 26)

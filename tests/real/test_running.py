@@ -283,7 +283,7 @@ def test_a_goal_of_an_action_is_seen_at_work_as_on_the_model(tmp_path: Path) -> 
         }
 
     assert seen("ros2") == seen("model")
-    assert ("/count", "execute", "reentrant", 1) in seen("model")
+    assert ("/count", "execute", "no group", 1) in seen("model")
 
 
 def test_a_timer_without_a_period_is_watched_as_any_other(tmp_path: Path) -> None:

@@ -116,6 +116,11 @@ class Run:
         """Make a reentrant group."""
         return self._group(node, GroupKind.REENTRANT, "ReentrantCallbackGroup")
 
+    def task(self, node: NodeId, callback: str) -> EntityId:
+        """Make what stands for a function that an executor runs as a task."""
+        group = self._group(node, GroupKind.NONE, "NoGroup")
+        return self._entity(group, EntityKind.TASK, "", callback, "node.py", (1, 1), 0, 0)
+
     def timer(
         self,
         group: GroupId,

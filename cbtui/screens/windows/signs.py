@@ -75,7 +75,7 @@ def factory_signs(charset: Charset) -> SignList:
         ),
         (
             f"{opened.top_left}{opened.top}{opened.top_right} {opened.side}",
-            "an area that is open to all: a reentrant group",
+            "an area that is open to all: a reentrant group, or no group",
         ),
         (glyphs.belt * 4, "the belt of a callback, which brings its messages"),
         (shared.back, "the belt of a client brings replies: it has the name of its service"),

@@ -8,7 +8,7 @@ from cbtui.widgets.factory.scene import Area, Belt, FactoryScene
 from cbtui.widgets.factory.texts import belt_details, belt_name, first_fitting, queue_level, wait_texts
 from cbtui.widgets.lanes.names import shortened
 from sim.quantities.durations import duration
-from sim.trace.events import EntityKind
+from sim.trace.events import EntityKind, GroupKind
 
 _MOST_BOXES = 10
 _LEAST_BOXES = 4
@@ -31,9 +31,15 @@ class BeltPainter:
         self._level = max((len(_widest_level(belt)) for belt in every if belt.tick is None), default=0)
 
     def draw(self, belt: Belt, area: Area, line: int, rows: int) -> None:
-        """Draw a belt in one row, where a timer's rate gives way to the reason of its wait, or in two."""
+        """Draw a belt in one row, where a timer's rate gives way to the reason of its wait, or in two.
+
+        What is in no group has a name alone.
+        """
+        self._write_name(belt, line)
+        if area.group.kind is GroupKind.NONE:  # an executor runs it as a task: nothing arrives
+            return
         why = wait_texts(belt, self._scene.timeline, self._scene.now)
-        at = self._head(belt, line)
+        at = self._level_or_rate(belt, line)
         room = self._door - at
         boxes = self._boxes(belt)
         if rows == 1:
@@ -59,11 +65,13 @@ class BeltPainter:
     def _name_of(self, belt: Belt) -> str:
         return belt_name(belt, self._scene.timeline, self._canvas.charset)
 
-    def _head(self, belt: Belt, line: int) -> int:
-        """Write a belt's name and its level or a timer's rate; return the column after them."""
+    def _write_name(self, belt: Belt, line: int) -> None:
         name = self._name_of(belt)
         name = shortened(name, self._name, GLYPHS[self._canvas.charset].ellipsis, (name,))
         self._canvas.write(1, line, name, STRONG, self._name)
+
+    def _level_or_rate(self, belt: Belt, line: int) -> int:
+        """Write a belt's level, or a timer's rate; return the column after it."""
         at = self._name + 2
         if belt.tick is not None:
             text, ink = f"{self._glyphs.clock} {duration(belt.entity.period)}", PLAIN

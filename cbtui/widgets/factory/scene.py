@@ -18,7 +18,7 @@ from cbtui.widgets.lanes.rows import (
 )
 from sim.diagnosis.words import thread_count
 from sim.trace.descriptions import mismatch_of
-from sim.trace.events import EntityKind, GroupKind, Reason, ThreadId
+from sim.trace.events import EntityKind, Reason, ThreadId
 from sim.trace.figures.timers import TimerTick, tick_of
 from sim.trace.figures.waiting import wait_told
 from sim.trace.model import (
@@ -124,7 +124,7 @@ class Area:
     @property
     def is_open(self) -> bool:
         """Whether it admits every callback."""
-        return self.group.kind is GroupKind.REENTRANT
+        return self.group.is_open
 
     @property
     def waiting(self) -> int:

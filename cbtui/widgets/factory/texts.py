@@ -189,6 +189,8 @@ def admission_texts(area: Area) -> tuple[str, ...]:
             return ("open to all", "open")
         case GroupKind.CUSTOM:
             return ("rules of its own", "custom")
+        case GroupKind.NONE:
+            return ("no group",)
 
 
 def activity_texts(worker: FactoryWorker, timeline: Timeline) -> tuple[str, ...]:

@@ -14,7 +14,7 @@ from cbtui.widgets.lanes.selection import Bar, end_of, start_of
 from cbtui.widgets.lanes.status import is_late
 from sim.quantities.durations import duration
 from sim.trace.descriptions import doing_of, why_waiting
-from sim.trace.events import Doing, EntityId, EntityKind, GroupKind, Reason
+from sim.trace.events import Doing, EntityId, EntityKind, Reason
 from sim.trace.figures.chains import ChainStep
 from sim.trace.figures.waiting import wait_judged
 from sim.trace.model import Blocked, EntityInfo, GroupInfo, Nanoseconds, Position, Span, Wait
@@ -149,7 +149,7 @@ class BarPainter:
     def group(self, row: CellRow, columns: Sequence[LaneColumn[Span] | None], group: GroupInfo) -> None:
         """Draw the callback that holds a group: a line, or a point for an instant."""
         ink = Ink(Role.LINE, group.place)
-        if group.kind is GroupKind.REENTRANT:
+        if group.is_open:
             self._together(row, columns, ink)
             return
         for stretch in stretches(columns):
@@ -165,7 +165,7 @@ class BarPainter:
 
     def kept_columns(self, group: GroupInfo, scale: TimeScale) -> list[tuple[int, int, EntityId]]:
         """Return the stretches in which a suspended call keeps an exclusive group, as ``kept`` draws them."""
-        if group.kind is GroupKind.REENTRANT:
+        if group.is_open:
             return []
         found = self.timeline.suspensions_in(group.id, scale.window)
         columns = ((scale.column_of(each.start), scale.column_of(each.end), entity) for entity, each in found)
@@ -187,7 +187,7 @@ class BarPainter:
             self._words(row, *_longest_part(free), texts)
 
     def _together(self, row: CellRow, columns: Sequence[LaneColumn[Span] | None], ink: Ink) -> None:
-        """Draw a reentrant group: a line where one callback runs, a double line where several do."""
+        """Draw an open group: a line where one callback runs, a double line where several do."""
         for stretch in stretches(columns):
             if stretch.is_short and stretch.columns[0].at_once < 2:
                 row.put(stretch.first, self.glyphs.point, ink)

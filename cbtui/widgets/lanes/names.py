@@ -3,7 +3,7 @@
 from collections.abc import Collection
 
 from cbtui.text.callback_names import short_name
-from sim.trace.events import EntityKind
+from sim.trace.events import EntityKind, GroupKind
 from sim.trace.model import EntityInfo, GroupInfo, ThreadInfo
 from sim.trace.roster import roster_of
 from sim.trace.timeline import Timeline
@@ -115,4 +115,5 @@ def more_lanes(hidden: int, key: str, room: int) -> str:
 
 def _kinds(group: GroupInfo) -> tuple[str, str]:
     """A group's kind, in full and abbreviated."""
-    return group.kind.value, group.kind.value[:_BRIEF]
+    full = group.kind.value
+    return full, full if group.kind is GroupKind.NONE else full[:_BRIEF]

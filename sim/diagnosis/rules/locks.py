@@ -18,7 +18,7 @@ from sim.diagnosis.words import listed, lock_keeper, lock_taker, often, threads_
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import doing_of
-from sim.trace.events import Doing, EntityId, GroupKind
+from sim.trace.events import Doing, EntityId
 from sim.trace.model import Nanoseconds, Position, Window
 from sim.trace.timeline import Timeline
 
@@ -90,8 +90,7 @@ class LocksInTurn(Rule):
         for file in {file for file, _ in known if file}:
             for one, _, two, line, *locks in locks_in_turn(file):
                 pair = [known[file, each] for each in (one, two) if (file, each) in known]
-                kinds = {timeline.groups[each.group].kind for each in pair}
-                beside = len({each.group for each in pair}) == 2 or kinds == {GroupKind.REENTRANT}
+                beside = len({each.group for each in pair}) == 2 or timeline.groups[pair[0].group].is_open
                 ran = [each for each in pair if timeline.calls_of(each.id, called)]
                 is_alone = threads_for((each.id for each in ran), view.end, timeline) == 1
                 if len(ran) == 2 and beside and not is_alone and ran[0].node == ran[1].node:

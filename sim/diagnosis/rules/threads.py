@@ -8,7 +8,7 @@ from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import listed, thread_count
 from sim.quantities.nanoseconds import SECOND
 from sim.quantities.plural import counted
-from sim.trace.events import EntityKind, GroupId, GroupKind, NodeId
+from sim.trace.events import EntityKind, GroupKind, NodeId
 from sim.trace.model import EntityInfo, ExecutorInfo, GroupInfo, Nanoseconds
 from sim.trace.timeline import Timeline
 
@@ -86,9 +86,8 @@ class GroupsChangeNothing(Rule):
                 "give callbacks that should run at the same time groups of their own",
                 place_of(found.subject, timeline),
             )
-        goals = _groups_of_goals(timeline)
-        of_node = (each for each in timeline.groups.values() if each.node == subject.node)
-        own = (each for each in of_node if each.id not in goals and _callbacks(timeline, each))
+        of_node = (each for each in _groups(timeline) if each.node == subject.node)
+        own = (each for each in of_node if _callbacks(timeline, each))
         groups = list(islice(own, _MOST_LETTERS + 1))
         plural = len(groups) > 1
         named = listed(_abbreviated([each.letter for each in groups]))
@@ -109,15 +108,6 @@ _GROUPS = "groups"
 def _abbreviated(letters: list[str]) -> list[str]:
     """Return the first letters, and that there are others."""
     return letters if len(letters) <= _MOST_LETTERS else [*letters[: _MOST_LETTERS - 1], "others"]
-
-
-_IN_NO_GROUP = (EntityKind.WAITABLE, EntityKind.TASK)
-
-
-def _groups_of_goals(timeline: Timeline) -> set[GroupId]:
-    """Return the groups of the trace that stand for execute callbacks and tasks, which are in no group."""
-    every = timeline.entities.values()
-    return {each.group for each in every if each.kind in _IN_NO_GROUP and each.callback}
 
 
 def _with_workers(timeline: Timeline) -> list[ExecutorInfo]:
@@ -142,13 +132,15 @@ def _only_group(timeline: Timeline) -> GroupInfo | None:
     return groups[0] if len(_callbacks(timeline, groups[0])) > 1 else None
 
 
+def _groups(timeline: Timeline) -> Iterator[GroupInfo]:
+    """The callback groups, without what stands for none."""
+    return (each for each in timeline.groups.values() if each.kind is not GroupKind.NONE)
+
+
 def _node_with_groups(timeline: Timeline) -> EntityInfo | None:
     """A callback of a node that has several groups or a reentrant one."""
     first: dict[NodeId, EntityInfo] = {}
-    goals = _groups_of_goals(timeline)
-    for group in timeline.groups.values():
-        if group.id in goals:
-            continue
+    for group in _groups(timeline):
         for callback in _callbacks(timeline, group)[:1]:
             if group.node in first or group.kind is GroupKind.REENTRANT:
                 return first.get(group.node, callback)

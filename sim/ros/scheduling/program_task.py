@@ -1,7 +1,7 @@
 """The program's functions that executors run as tasks on the trace: done-callbacks, goals' execute callbacks.
 
-A task belongs to no callback group. So that the trace shows it, each such function has an entity in a
-reentrant group of its own: that group admits everything, as if there were none.
+A task belongs to no callback group. So that the trace shows it, each such function has an entity, in a
+group of its own that stands for none.
 """
 
 from __future__ import annotations
@@ -16,7 +16,13 @@ from sim.probes.own_code import is_written
 from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
 from sim.ros.scheduling.entity import Entity, OwnerNode, TakenData
 from sim.ros.scheduling.task import Task
-from sim.trace.events import EntityKind
+from sim.trace.events import EntityKind, GroupKind
+
+
+class NoGroup(ReentrantCallbackGroup):
+    """Stands on the trace for the group of what is in none."""
+
+    trace_kind = GroupKind.NONE
 
 
 class TaskEntity(Entity):
@@ -32,7 +38,7 @@ class TaskEntity(Entity):
     ) -> None:
         self.kind = kind
         self.callback = function
-        super().__init__(node, name, ReentrantCallbackGroup())
+        super().__init__(node, name, NoGroup())
         node.context.probe.entity_made(self)
 
     def take(self, now: int) -> TakenData | None:

@@ -133,8 +133,8 @@ LockKeeperId: TypeAlias = Annotated[
 ]
 
 GroupId: TypeAlias = Annotated[int, JsonForm("group group_type", lambda names, number: names.group(number))]
-"""Letter of the callback group (A, B, … Z, A2, …), and its type: ``exclusive``, ``reentrant``, or ``custom``
-for a class of the program's own."""
+"""Letter of the callback group (A, B, … Z, A2, …), and its type: ``exclusive``, ``reentrant``, ``custom``
+for a class of the program's own, or ``no group`` for what an executor runs in none."""
 
 ThreadId: TypeAlias = Annotated[int, JsonForm("thread", lambda names, number: names.thread(number))]
 """Name of the thread."""

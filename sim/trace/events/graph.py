@@ -40,6 +40,8 @@ class GroupKind(StrEnum):
     EXCLUSIVE = "exclusive"
     REENTRANT = "reentrant"
     CUSTOM = "custom"
+    NONE = "no group"
+    """Stands on the trace for the group of what an executor runs in none."""
 
 
 class ProcessAppeared(TraceEvent, frozen=True, tag="process"):

@@ -20,6 +20,7 @@ from sim.trace.events import (
     EntityKind,
     EntityReady,
     GroupAppeared,
+    GroupKind,
     Logged,
     Published,
     Reason,
@@ -97,7 +98,7 @@ def test_who_waits_for_a_worker_is_told_that_a_goal_has_it() -> None:
     assert wait.holder == trace.entity("execute")
 
 
-def test_an_execute_callback_has_a_lane_entry_in_a_group_of_its_own() -> None:
+def test_an_execute_callback_has_a_lane_entry_in_no_group() -> None:
     trace = ticking(lambda: None, 1, 1)
     shown = {each.entity: each for each in trace.of(EntityAppeared)}
     execution = shown[trace.entity("execute")]
@@ -106,7 +107,7 @@ def test_an_execute_callback_has_a_lane_entry_in_a_group_of_its_own() -> None:
     members = [each for each in shown.values() if each.group == execution.group]
     assert members == [execution]
     (group,) = (each for each in trace.of(GroupAppeared) if each.group == execution.group)
-    assert group.class_name == "ReentrantCallbackGroup"
+    assert group.kind is GroupKind.NONE
 
 
 def test_what_an_execute_callback_publishes_and_logs_is_known_to_be_its() -> None:

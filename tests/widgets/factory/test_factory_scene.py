@@ -231,6 +231,21 @@ def test_a_call_that_awaits_in_an_open_area_has_not_ended_and_keeps_no_seat(widt
     assert "open, 1 awaits" in lanes
 
 
+@pytest.mark.parametrize(("width", "height"), [(78, 9), (138, 30)])
+def test_a_task_is_in_no_group_and_has_no_belt(width: int, height: int) -> None:
+    run = Run()
+    worker = run.thread("MainThread")
+    run.callback(run.task(run.node("/n"), "answered"), worker, 1.0, 1.0)
+    timeline = told(run)
+    picture = plain(FactoryPainter().paint(timeline, ns(1.5), width, height))
+    (head,) = (line for line in picture.splitlines() if " A " in line and "MainThread" not in line)
+    assert "no group" in head
+    (row,) = (line for line in picture.splitlines() if line.startswith(" answered"))
+    assert set(row.removeprefix(" answered")[: row.index("╎") - len(" answered")]) == {" "}
+    lanes = plain(LanePainter().paint(timeline, Window(0, ns(5.0)), ns(1.5), width, 8).rows)
+    assert "reentrant" not in picture + lanes
+
+
 def test_a_timer_that_waits_for_its_own_last_call_is_not_counted_among_those_who_wait() -> None:
     timeline = split_groups()
     assert not list(scene_at(timeline, 9.4).waits())

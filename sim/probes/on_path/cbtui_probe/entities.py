@@ -39,11 +39,15 @@ def _type_of(made: Any) -> str:
     return "/".join([*kind.__module__.split(".")[:2], kind.__name__])
 
 
-class _Execution:
-    """A stand-in for the execute callback of an action server, which is no entity of rclpy's."""
+class NoGroup:
+    """Stands on the trace for the group of what is in none."""
+
+
+class _Task:
+    """A stand-in for a function that executors run as a task, which is no entity of rclpy's."""
 
     def __init__(self) -> None:
-        self.callback_group = ReentrantCallbackGroup()
+        self.callback_group = NoGroup()
 
 
 class Entities:
@@ -209,6 +213,8 @@ class Entities:
                 kind = "exclusive"
             elif type(group) is ReentrantCallbackGroup:
                 kind = "reentrant"
+            elif type(group) is NoGroup:
+                kind = "no group"
             self._recorder.put("group", now(), number, node, kind, type(group).__name__)
         return int(state_of(group))
 
@@ -301,19 +307,13 @@ class Entities:
         node_class.add_waitable = add_waitable
 
     def _know_execution(self, node: Any, server: Any, name: str) -> None:
-        """Record the execute callback of an action server, which rclpy runs as a task, in no group.
-
-        On the trace it is in a reentrant group of its own.
-        """
+        """Record the execute callback of an action server, which rclpy runs as a task, in no group."""
         entity, callback = WatchedEntity("waitable"), server._execute_callback
         server._execute_callback = Calls(self._recorder, entity).traced(callback)
-        self._know(node, _Execution(), entity, callback, name)
+        self._know(node, _Task(), entity, callback, name)
 
     def watch_tasks(self, executor_class: Any) -> None:
-        """Record the program's functions that executors run as tasks, such as done-callbacks, in no group.
-
-        On the trace each is in a reentrant group of its own.
-        """
+        """Record the program's functions that executors run as tasks, such as done-callbacks, in no group."""
         create, known = executor_class.create_task, dict[tuple[CodeType, int], WatchedEntity]()
 
         @wraps(create)
@@ -325,7 +325,7 @@ class Entities:
                 key = code, id(node)
                 if key not in known:
                     known[key] = WatchedEntity("task")
-                    self._know(node, _Execution(), known[key], callback, "")
+                    self._know(node, _Task(), known[key], callback, "")
                 calls = Calls(self._recorder, known[key])
                 trace = calls.traced_coroutine if inspect.iscoroutine(callback) else calls.traced
                 callback = trace(callback)
