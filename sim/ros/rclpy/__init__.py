@@ -1,8 +1,8 @@
 """The face of the model: the modules of rclpy.
 
 ``import rclpy`` imports this package in an engine process (see ``sim.ros.importing``). Its modules have
-rclpy's names, and import their content from the model. A folder with a leading underscore groups modules;
-it is not part of their names.
+rclpy's names, and import their content from the model; ``_namesakes`` makes those that are a module of the
+model as it is. A folder with a leading underscore groups modules; it is not part of their names.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from sim.ros.context.utilities import get_default_context, get_rmw_implementatio
 from sim.ros.middleware.process import process_local
 from sim.ros.node.node import Node
 from sim.ros.parameters.parameter import Parameter
+from sim.ros.rclpy import _namesakes
 from sim.ros.scheduling.executors import Executor, SingleThreadedExecutor
 from sim.ros.scheduling.task import Future
 
@@ -44,6 +45,7 @@ __all__ = [
 ]
 
 
+_namesakes.put_into(__name__)
 __path__.extend(str(folder) for folder in sorted(Path(__path__[0]).glob("_[a-z]*/")))
 
 if not TYPE_CHECKING:

@@ -36,14 +36,16 @@ def test_every_module_is_the_same_under_both_names() -> None:
         "importing.install()\n"
         "import rclpy\n"
         "warnings.simplefilter('ignore', DeprecationWarning)\n"
-        "for found in pkgutil.walk_packages(rclpy.__path__, 'rclpy.'):\n"
-        "    model = importlib.import_module(f'sim.ros.{found.name}')\n"
-        "    assert importlib.import_module(found.name) is model, found.name\n"
-        "    assert '._' not in found.name.replace('._rclpy_pybind11', ''), found.name\n"
-        "    print(found.name)\n"
+        "names = [found.name for found in pkgutil.walk_packages(rclpy.__path__, 'rclpy.')]\n"
+        "names += [f'rclpy.{each}' for each in rclpy._namesakes.NAMESAKES]\n"
+        "for name in names:\n"
+        "    model = importlib.import_module(f'sim.ros.{name}')\n"
+        "    assert importlib.import_module(name) is model, name\n"
+        "    assert '._' not in name.replace('._rclpy_pybind11', '').replace('._namesakes', ''), name\n"
+        "    print(name)\n"
     )
     found = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)
-    assert {"rclpy.node", "rclpy.qos", "rclpy.action.client"} <= set(found.stdout.split())
+    assert {"rclpy.node", "rclpy.qos", "rclpy.client", "rclpy.action.client"} <= set(found.stdout.split())
 
 
 def test_every_module_is_there_for_a_program_that_imports_the_package_only() -> None:

@@ -1,3 +1,0 @@
-"""``rclpy.client``, as programs import it."""
-
-from sim.ros.entities.client import *

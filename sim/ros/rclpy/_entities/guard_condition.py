@@ -1,3 +1,0 @@
-"""``rclpy.guard_condition``, as programs import it."""
-
-from sim.ros.entities.guard_condition import *

@@ -1,3 +1,0 @@
-"""``rclpy.publisher``, as programs import it."""
-
-from sim.ros.entities.publisher import *

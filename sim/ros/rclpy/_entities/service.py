@@ -1,3 +1,0 @@
-"""``rclpy.service``, as programs import it."""
-
-from sim.ros.entities.service import *

@@ -1,3 +1,0 @@
-"""``rclpy.service_introspection``, as programs import it."""
-
-from sim.ros.entities.service_introspection import *

@@ -1,3 +1,0 @@
-"""``rclpy.subscription``, as programs import it."""
-
-from sim.ros.entities.subscription import *

@@ -1,3 +1,0 @@
-"""``rclpy.waitable``, as programs import it."""
-
-from sim.ros.scheduling.waitable import *

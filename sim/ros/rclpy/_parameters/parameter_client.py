@@ -1,3 +1,0 @@
-"""``rclpy.parameter_client``, as programs import it."""
-
-from sim.ros.node.parameter_client import *

@@ -1,3 +1,0 @@
-"""``rclpy.duration``, as programs import it."""
-
-from sim.ros.time.duration import *

@@ -1,3 +1,0 @@
-"""``rclpy.time``, as programs import it."""
-
-from sim.ros.time.time import *

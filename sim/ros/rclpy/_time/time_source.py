@@ -1,3 +1,0 @@
-"""``rclpy.time_source``, as programs import it."""
-
-from sim.ros.node.time_source import *

@@ -1,3 +1,0 @@
-"""``rclpy.context``, as programs import it."""
-
-from sim.ros.context.context import *

@@ -1,3 +1,0 @@
-"""``rclpy.exceptions``, as programs import it."""
-
-from sim.ros.exceptions import *

@@ -1,3 +1,0 @@
-"""``rclpy.handle``, as programs import it."""
-
-from sim.ros.handle import *

@@ -1,3 +1,0 @@
-"""``rclpy.serialization``, as programs import it."""
-
-from sim.ros.entities.serialization import *

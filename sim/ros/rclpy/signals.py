@@ -1,3 +1,0 @@
-"""``rclpy.signals``, as programs import it."""
-
-from sim.ros.context.signals import *

@@ -1,3 +1,0 @@
-"""``rclpy.task``, as programs import it."""
-
-from sim.ros.scheduling.task import *

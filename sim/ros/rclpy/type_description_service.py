@@ -1,3 +1,0 @@
-"""``rclpy.type_description_service``, as programs import it."""
-
-from sim.ros.node.type_description_service import *

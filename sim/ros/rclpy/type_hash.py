@@ -1,3 +1,0 @@
-"""``rclpy.type_hash``, as programs import it."""
-
-from sim.ros.middleware.type_hash import *

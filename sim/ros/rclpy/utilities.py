@@ -1,3 +1,0 @@
-"""``rclpy.utilities``, as programs import it."""
-
-from sim.ros.context.utilities import *
