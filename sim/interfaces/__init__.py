@@ -1,7 +1,7 @@
 """ROS 2 message, service and action classes that behave as rclpy's, without a ROS 2 installation.
 
 The messages of Jazzy's standard packages come from the rosbags library. Services, actions and the messages
-that rosbags lacks are in ``definitions/``, in ROS 2's notation. A class is built when it is first
+that rosbags lacks are in ``definitions.interfaces``, in ROS 2's notation. A class is built when it is first
 used, so importing this package is cheap.
 """
 

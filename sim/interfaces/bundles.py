@@ -1,4 +1,4 @@
-"""Reads the interfaces of this package: ``definitions/<package>.interfaces``, a file for each package."""
+"""Reads the interfaces of this package: ``definitions.interfaces``, a file for all of them."""
 
 import re
 from pathlib import Path
@@ -6,24 +6,23 @@ from pathlib import Path
 from sim.interfaces.folder import interface_parts
 from sim.interfaces.interface_definition import Definition, Kind
 
-_HEADING = re.compile(r"^=== (msg|srv|action)/(\w+)\n", re.MULTILINE)
+_HEADING = re.compile(r"^=== (\w+)/(msg|srv|action)/(\w+)\n", re.MULTILINE)
 
 
-class DefinitionBundles:
-    """The definitions in the ``.interfaces`` files of a folder.
+class DefinitionBundle:
+    """The definitions in an ``.interfaces`` file.
 
-    A line ``=== srv/SetBool`` stands before the definition as ROS 2 has it in ``srv/SetBool.srv``.
+    A line ``=== std_srvs/srv/SetBool`` stands before the definition as ROS 2 has it in ``srv/SetBool.srv``.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, path: Path) -> None:
         self._texts: dict[tuple[str, str], dict[str, str]] = {}
-        for path in sorted(folder.glob("*.interfaces")):
-            _, *sections = _HEADING.split(path.read_text(encoding="utf-8"))
-            for kind, name, text in zip(sections[::3], sections[1::3], sections[2::3], strict=True):
-                self._texts.setdefault((path.stem, kind), {})[name] = text
+        _, *sections = _HEADING.split(path.read_text(encoding="utf-8"))
+        for package, kind, name, text in zip(*(sections[part::4] for part in range(4)), strict=True):
+            self._texts.setdefault((package, kind), {})[name] = text
 
     def packages(self) -> frozenset[str]:
-        """Return the packages that have a file."""
+        """Return the packages."""
         return frozenset(package for package, _ in self._texts)
 
     def names(self, package: str, kind: Kind) -> tuple[str, ...]:

@@ -87,10 +87,10 @@ def message_of_type(type_name: str) -> type[Message]:
 
 @cache
 def _registry() -> Registry:
-    from sim.interfaces.bundles import DefinitionBundles
+    from sim.interfaces.bundles import DefinitionBundle
     from sim.interfaces.jazzy import JazzyMessages
 
-    return Registry(JazzyMessages(), DefinitionBundles(Path(__file__).parent / "definitions"))
+    return Registry(JazzyMessages(), DefinitionBundle(Path(__file__).parent / "definitions.interfaces"))
 
 
 look_up_by(message_of_type)

@@ -24,11 +24,11 @@ from sim.interfaces import (
     packages,
     service,
 )
-from sim.interfaces.bundles import DefinitionBundles
+from sim.interfaces.bundles import DefinitionBundle
 from sim.interfaces.jazzy import JazzyMessages
 from sim.interfaces.registry import Registry
 
-DEFINITIONS = Path(known.__file__).parent / "definitions"
+DEFINITIONS = Path(known.__file__).parent / "definitions.interfaces"
 
 
 @pytest.fixture(autouse=True)
@@ -148,7 +148,7 @@ def test_the_first_finder_of_a_process_does_not_ask_itself_without_end() -> None
 def test_own_packages_win_over_the_bare_folders_python_sees(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    registry = Registry(DefinitionBundles(DEFINITIONS), JazzyMessages())
+    registry = Registry(DefinitionBundle(DEFINITIONS), JazzyMessages())
     monkeypatch.setattr(known, "_registry", lambda: registry)
     folder = tmp_path / "course" / "my_interfaces" / "msg"
     folder.mkdir(parents=True)

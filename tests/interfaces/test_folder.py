@@ -9,12 +9,12 @@ import pytest
 
 from sim import interfaces
 from sim.interfaces import DefinitionError
-from sim.interfaces.bundles import DefinitionBundles
+from sim.interfaces.bundles import DefinitionBundle
 from sim.interfaces.folder import DefinitionFolder
 from sim.interfaces.jazzy import JazzyMessages
 from sim.interfaces.registry import Registry
 
-DEFINITIONS = Path(interfaces.__file__).parent / "definitions"
+DEFINITIONS = Path(interfaces.__file__).parent / "definitions.interfaces"
 
 
 class Workspace:
@@ -29,7 +29,7 @@ class Workspace:
         file.write_text(text)
 
     def registry(self) -> Registry:
-        return Registry(JazzyMessages(), DefinitionBundles(DEFINITIONS), DefinitionFolder(self.root))
+        return Registry(JazzyMessages(), DefinitionBundle(DEFINITIONS), DefinitionFolder(self.root))
 
 
 @pytest.fixture

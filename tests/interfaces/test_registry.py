@@ -23,13 +23,13 @@ from sim.interfaces import (
     service,
     to_cdr,
 )
-from sim.interfaces.bundles import DefinitionBundles
+from sim.interfaces.bundles import DefinitionBundle
 from sim.interfaces.folder import DefinitionFolder
 from sim.interfaces.interface_definition import FILLER_FIELD, Definition
 from sim.interfaces.jazzy import JazzyMessages, jazzy_tables
 from sim.interfaces.registry import Registry
 
-DEFINITIONS = Path(interfaces.__file__).parent / "definitions"
+DEFINITIONS = Path(interfaces.__file__).parent / "definitions.interfaces"
 
 
 class Recording(JazzyMessages):
@@ -86,7 +86,7 @@ def test_reading_the_tables_leaves_the_classes_of_rosbags_whole() -> None:
 
 
 def test_files_of_messages_rosbags_knows_say_the_same() -> None:
-    files, jazzy = DefinitionBundles(DEFINITIONS), JazzyMessages()
+    files, jazzy = DefinitionBundle(DEFINITIONS), JazzyMessages()
     both = [
         (package, name)
         for package in files.packages() & jazzy.packages()
@@ -192,7 +192,7 @@ def test_a_folder_overlays_what_is_known_and_leaves_the_rest_of_its_package(tmp_
 
 
 def test_a_replaced_message_is_replaced_in_services_and_actions_too(tmp_path: Path) -> None:
-    registry = Registry(JazzyMessages(), DefinitionBundles(DEFINITIONS))
+    registry = Registry(JazzyMessages(), DefinitionBundle(DEFINITIONS))
     action, service = (
         registry.action("nav2_msgs", "NavigateToPose"),
         registry.service("gazebo_msgs", "SpawnEntity"),

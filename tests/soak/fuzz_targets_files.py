@@ -15,7 +15,7 @@ from lessons.progress import Progress
 from sim.engine.setup import ProgramSetup, RunSetup, TimedCall, TimedInput, TimedLine
 from sim.files import plain_yaml
 from sim.interfaces import DefinitionError, Kind, known, message
-from sim.interfaces.bundles import DefinitionBundles
+from sim.interfaces.bundles import DefinitionBundle
 from sim.interfaces.folder import DefinitionFolder
 from sim.interfaces.jazzy import JazzyMessages
 from sim.interfaces.registry import Registry
@@ -26,7 +26,7 @@ from sim.shell.messages import Outgoing, given_values
 from sim.shell.session import CommandFailed
 from tests.soak.fuzz_target import Target, listed, text_of
 
-DEFINITIONS = Path(known.__file__).parent / "definitions"
+DEFINITIONS = Path(known.__file__).parent / "definitions.interfaces"
 _FILES = ("guide.md", "explain.md", "checks.py", "node.py", "starter.py", "solution.py")
 
 
@@ -196,7 +196,7 @@ def _read_parameters(data: bytes, _: Path) -> None:
 
 def interfaces() -> Target:
     """``.msg``, ``.srv`` and ``.action`` files, and the classes made of them."""
-    bundles = DefinitionBundles(DEFINITIONS)
+    bundles = DefinitionBundle(DEFINITIONS)
     kinds: tuple[Kind, ...] = ("msg", "srv", "action")
     every = [
         bundles.text(package, kind, name).encode()
@@ -238,8 +238,8 @@ def _read_interfaces(data: bytes, folder: Path) -> None:
 
 
 @cache
-def _others() -> tuple[JazzyMessages, DefinitionBundles]:
-    return JazzyMessages(), DefinitionBundles(DEFINITIONS)
+def _others() -> tuple[JazzyMessages, DefinitionBundle]:
+    return JazzyMessages(), DefinitionBundle(DEFINITIONS)
 
 
 def packages() -> Target:
