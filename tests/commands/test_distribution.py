@@ -16,8 +16,8 @@ _NEVER = (".pyc", ".mcap")
 """What the endings are of files that running leaves behind."""
 _PICTURE = "cbtui/screen.svg"
 """The README's picture, which only the repository needs."""
-_PAGES = ("README.md", "EVENTS.md")
-"""What the pages on rooms and events are named."""
+_FOR_READERS = ("README.md", "EVENTS.md", "ruff.toml")
+"""What the pages on rooms and events, and the settings of the lessons' linter, are named."""
 _BUILD = "import sys; from hatchling import build; print(build.build_wheel(sys.argv[1]))"
 
 
@@ -52,9 +52,9 @@ def test_the_wheel_is_small(built: Path) -> None:
     assert built.stat().st_size < 2_000_000
 
 
-def test_the_wheel_has_every_file_but_pages_and_nothing_else(wheel: set[str]) -> None:
+def test_the_wheel_has_every_file_but_what_only_readers_need_and_nothing_else(wheel: set[str]) -> None:
     own = {name for name in wheel if ".dist-info/" not in name}
-    assert own == {name for name in _files(_PACKAGES) - {_PICTURE} if Path(name).name not in _PAGES}
+    assert own == {name for name in _files(_PACKAGES) - {_PICTURE} if Path(name).name not in _FOR_READERS}
 
 
 def test_the_wheel_has_what_is_no_python_too(wheel: set[str]) -> None:
