@@ -11,7 +11,8 @@ from sim.ros.entities.event_handler import PublisherEventCallbacks, Subscription
 from sim.ros.entities.publisher import Publisher
 from sim.ros.node.node import Node
 from sim.ros.qos.qos import DurabilityPolicy, LivelinessPolicy, QoSProfile
-from sim.ros.rclpy import callback_groups, executors
+from sim.ros.rclpy import executors
+from sim.ros.scheduling import callback_groups
 from sim.ros.scheduling.executors import MultiThreadedExecutor
 from sim.ros.time.duration import Duration
 from tests.support.simulation import Simulation, simulate
