@@ -8,9 +8,9 @@ import msgspec
 import pytest
 
 from cbtui.engines.follow import GivenUpError
+from cbtui.runs.judged import cures as judged_cures
 from cbtui.runs.judged.cures import (
-    Cure,
-    Problem,
+    TriedRun,
     cures_of,
     judged,
     problem_of,
@@ -18,7 +18,7 @@ from cbtui.runs.judged.cures import (
     with_inputs,
 )
 from cbtui.runs.setup.changes import Changes
-from sim.diagnosis import diagnose
+from sim.diagnosis import Finding, diagnose
 from sim.diagnosis.edits.profiles import match_quality
 from sim.diagnosis.rule import CodeLocation, by_edit
 from sim.engine.commands import CallService, input_text
@@ -37,17 +37,25 @@ def run_of(program: str, folder: Path = PROGRAMS) -> tuple[RunSetup, Timeline]:
     return setup, run_to_end(setup).timeline
 
 
-def offered(program: str, folder: Path = PROGRAMS) -> tuple[Problem, RunSetup, list[Cure]]:
-    """The first problem of a program, and what can be tried of its cure."""
-    setup, timeline = run_of(program, folder)
-    found = diagnose(timeline)[0]
-    told = found.explained(timeline)
-    return problem_of(found, timeline), setup, list(cures_of(told, Changes(), timeline))
+def tried(program: str, folder: Path = PROGRAMS) -> tuple[RunSetup, Timeline, TriedRun]:
+    """One run of a program as a cure is held against it, with its timeline."""
+    setup, timelines = program_setup(folder / f"{program}.py", 3.0), list[Timeline]()
+
+    def noted(timeline: Timeline) -> tuple[Finding, ...]:
+        timelines.append(timeline)
+        return diagnose(timeline)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(judged_cures, "diagnose", noted)
+        before = try_run(setup, UNTIL, Event())
+    return setup, timelines[0], before
 
 
 def helpful(program: str, folder: Path = PROGRAMS) -> list[str]:
-    problem, setup, cures = offered(program, folder)
-    before = try_run(setup, UNTIL, Event())
+    setup, timeline, before = tried(program, folder)
+    found = diagnose(timeline)[0]
+    problem, told = problem_of(found, timeline), found.explained(timeline)
+    cures = list(cures_of(told, Changes(), timeline))
     runs = ((cure, try_run(cure.changes.applied(setup), UNTIL, Event())) for cure in cures)
     return [
         f"{cure.words}{cure.diff and ' (diff)'}"
@@ -273,9 +281,10 @@ def test_an_edited_copy_is_run_and_the_file_stays() -> None:
 
 
 def test_threads_alone_do_not_open_a_held_group() -> None:
-    problem, setup, _ = offered("held_group")
+    setup, timeline, before = tried("held_group")
+    problem = problem_of(diagnose(timeline)[0], timeline)
     after = try_run(Changes(threads=6).applied(setup), UNTIL, Event())
-    assert not judged(problem, try_run(setup, UNTIL, Event()), after).helps
+    assert not judged(problem, before, after).helps
 
 
 def test_a_second_cure_edits_what_the_first_made() -> None:
