@@ -25,7 +25,7 @@ from cbtui.looks.theme import Charset
 from cbtui.runs.setup.recent import RecentEntry, RecentKind, RecentList
 from cbtui.screens.menu import MenuScreen
 from cbtui.terminal.ending import EndingApp
-from cbtui.terminal.textual_internals import clear_hints, make_room_for
+from cbtui.terminal.textual_internals import clear_hints, clear_read, make_room_for
 from cbtui.text.ascii_filter import AsciiFilter
 from cbtui.text.harmless_filter import HarmlessFilter
 from cbtui.widgets.key_bar import say_at_once
@@ -294,9 +294,12 @@ class CbtuiApp(EndingApp):
             self.push_screen(screen)
 
     async def on_event(self, event: Event) -> None:
-        """Handle an event; the escape key also takes away the sentences that lie over the screen."""
-        if isinstance(event, Key) and event.key == "escape":
-            self.clear_notifications()
+        """Handle an event; a key takes away sentences over the screen that were read, escape all of them."""
+        if isinstance(event, Key):
+            if event.key == "escape":
+                self.clear_notifications()
+            else:
+                clear_read(self)
         await super().on_event(event)
 
     def action_help(self) -> None:

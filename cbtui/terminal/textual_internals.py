@@ -6,6 +6,7 @@ part; ``tests/terminal/test_textual_internals.py`` checks that, and fails for a 
 code that it depends on changes: then check whether the workaround can be removed.
 """
 
+from time import time
 from typing import TYPE_CHECKING, Any
 
 from textual._styles_cache import StylesCache
@@ -21,6 +22,9 @@ from textual.widgets._toast import ToastHolder, ToastRack
 
 if TYPE_CHECKING:
     from textual.worker import Worker
+
+_READ = 1.0
+"""Seconds after which a sentence that lies over the screen is taken to be read by who types on."""
 
 
 class SafeCommandPalette(CommandPalette):
@@ -54,6 +58,15 @@ def clear_hints(app: App[Any]) -> None:
     """Take away the sentences that lie over the screen, unless one of them warns."""
     if all(each.severity == "information" for each in app._notifications):
         app.clear_notifications()
+    _remove_holders(app)
+
+
+def clear_read(app: App[Any]) -> None:
+    """Take away the sentences that have lain over the screen for ``_READ``; not warnings and long ones."""
+    for each in list(app._notifications):
+        is_short = each.severity == "information" and each.timeout <= app.NOTIFICATION_TIMEOUT
+        if is_short and time() - each.raised_at > _READ:
+            app._unnotify(each)
     _remove_holders(app)
 
 

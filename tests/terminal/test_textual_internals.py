@@ -86,6 +86,7 @@ WORKAROUNDS: dict[str, tuple[str, list[Callable[..., Any]]]] = {
         [type(vars(Widget)["border_title"]).__set__],
     ),
     "textual_internals.take_back": ("0ca739607455", [App._unnotify]),
+    "textual_internals.clear_read": ("0ca739607455", [App._unnotify]),
     "textual_internals.make_room_for": ("6aeb8eba3002", [App._unnotify, Toast._on_mount, Toast._expire]),
     "textual_internals.clear_hints": ("68eb0959a230", [App.clear_notifications]),
     "textual_internals._remove_holders: toasts go without what holds them": (

@@ -1,6 +1,7 @@
 import asyncio
 import re
 import threading
+import time
 from collections import Counter
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -22,6 +23,7 @@ from cbtui.screens.parts.frames import FrameContent, FrameLoop
 from cbtui.screens.windows.help import HelpScreen
 from cbtui.screens.windows.prediction import PredictionScreen
 from cbtui.screens.windows.threads import ThreadsScreen
+from cbtui.terminal import textual_internals
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.factory import FactoryView
 from cbtui.widgets.guide import Guide
@@ -98,6 +100,18 @@ async def test_no_sentence_lies_over_a_window_that_is_opened(key: str) -> None:
         await press(pilot, key)
         assert app.screen is not lesson
         assert not app._notifications
+
+
+async def test_who_types_on_has_no_sentence_in_the_way_that_was_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    async with console() as (app, pilot):
+        app.notify("just said")
+        await press(pilot, "tab")
+        assert app._notifications, "nobody has read it yet"
+        app.notify("take care", severity="warning")
+        app.notify("a hint", timeout=15)
+        monkeypatch.setattr(textual_internals, "time", lambda: time.time() + 1.1)
+        await press(pilot, "tab")
+        assert [each.message for each in app._notifications] == ["take care", "a hint"]
 
 
 async def test_keys_reach_the_engine_as_commands() -> None:
