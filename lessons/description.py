@@ -151,6 +151,8 @@ class Exercise(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A file that passes every check."""
     beyond_node: Text | None = None
     """Lines that starter and solution share and the node lacks; all other shared lines are the node's."""
+    scene: Annotated[tuple[Actor, ...], Meta(max_length=4)] = ()
+    """The figures of the exercise, if those of the lesson are too few."""
 
 
 class DeclaredDiagnoses(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -10,6 +10,7 @@ import pytest
 from cbtui.learning.lesson_lint import faults_of
 from cbtui.learning.lesson_scaffold import TEMPLATE
 from cbtui.runs.setup.lesson_setup import setup_to_judge
+from cbtui.runs.setup.shown_program import of_exercise
 from lessons.catalogue import find, lessons
 from lessons.checks import rotations
 from lessons.judge import Judge
@@ -45,6 +46,18 @@ def test_the_lesson_before_announces_it(lesson: Lesson) -> None:
 @every_lesson
 def test_a_lesson_has_a_robot_that_moves_or_a_scene(lesson: Lesson) -> None:
     assert lesson.scene or lesson.unit.startswith("5"), "lesson.toml needs a [[scene]]: no robot moves"
+
+
+@pytest.mark.parametrize("lesson", [each for each in EXERCISES if each.scene], ids=lambda lesson: lesson.id)
+def test_callbacks_that_only_the_exercise_has_have_figures(lesson: Lesson) -> None:
+    assert lesson.starter_path is not None
+    added = _methods(lesson.starter_path) - _methods(lesson.node_path)
+    shown = of_exercise(lesson, [lesson], lesson.starter_path).scene
+    assert added <= {each.follows for each in shown}, "lesson.toml needs [[exercise.scene]]"
+
+
+def _methods(file: Path) -> set[str]:
+    return set(re.findall(r"^    def (\w+)\(self", file.read_text(encoding="utf-8"), re.MULTILINE))
 
 
 @every_lesson

@@ -135,6 +135,7 @@ def of_exercise(
         node_path=file,
         executor="as your file says",
         set_up=set_up,
+        scene=(lesson.exercise.scene if lesson.exercise is not None else ()) or lesson.scene,
     )
 
 
