@@ -103,6 +103,8 @@ class MenuRows:
 
     WIDTH = _TITLE + _OVERHANG
     """Columns for a title, and an invitation to open it."""
+    AFTER = ""
+    """Blanks that keep an invitation apart from the next column."""
 
     def __init__(self, lessons: Sequence[Lesson], stages: Mapping[str, Stage], now: float) -> None:
         """Take all lessons, the learner's stage in each by its id, and the time in seconds since 1970."""
@@ -130,7 +132,8 @@ class MenuRows:
         """Return a lesson's line: the sign of its stage, its number, its title."""
         title = fit(lesson.title, min(len(lesson.title), _TITLE), Charset.BRAILLE)
         room = self.WIDTH - len(title) - 1
-        invitations = (*self._invitations, "◂", "") if lesson is self._next else ("",)
+        signs = (f"{sign}{self.AFTER}" for sign in (*self._invitations, "◂"))
+        invitations = (*signs, "") if lesson is self._next else ("",)
         invitation = next(text for text in invitations if len(text) <= max(0, room))
         return Content.assemble(
             f"{self._stages[lesson.id].value} {lesson.number:>2}  ",
@@ -147,6 +150,7 @@ class WideMenuRows(MenuRows):
     """The lines of the wide list, with details."""
 
     WIDTH = _TITLE
+    AFTER = "  "
 
     def lesson(self, lesson: Lesson) -> Content:
         """Return a lesson's line with its executor and groups."""

@@ -174,6 +174,12 @@ async def test_the_menu_invites_to_the_first_lesson_with_something_left_to_do() 
         assert "One shared group    ◂ go on" in text_of(app)
 
 
+async def test_the_invitation_does_not_read_as_one_with_the_executor_beside_it() -> None:
+    app = menu()
+    async with app.run_test(size=WIDE):
+        assert "Single thread  ◂ start   rclpy.spin" in text_of(app)
+
+
 async def test_a_lesson_that_is_not_predicted_gives_nothing_away() -> None:
     app = menu()
     lesson = lessons()[0]
