@@ -8,12 +8,12 @@ from sim.diagnosis.words import group_of, late_reply, thread_count
 from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import name_of, why_waiting
 from sim.trace.events import Doing, EntityId, EntityKind, Reason, ThreadId
-from sim.trace.figures.timers import just_due
 from sim.trace.figures.waiting import (
     WORTH_TELLING,
     admits_others,
     had_other_reasons,
     is_held_by_own_call,
+    just_due,
     next_in_turn,
     waits_at,
     waits_since,

@@ -19,8 +19,7 @@ from cbtui.widgets.lanes.rows import (
 from sim.diagnosis.words import thread_count
 from sim.trace.descriptions import mismatch_of
 from sim.trace.events import EntityKind, Reason, ThreadId
-from sim.trace.figures.timers import TimerTick, tick_of
-from sim.trace.figures.waiting import wait_told
+from sim.trace.figures.waiting import TimerTick, tick_of, wait_told
 from sim.trace.model import (
     Blocked,
     EntityInfo,
