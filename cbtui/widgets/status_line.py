@@ -64,6 +64,8 @@ class RunStatus:
     """Nanoseconds since the last callback stopped for ever; None if others run."""
     moves: str = ""
     """The one thread that goes on beside the callbacks that stopped; "" for none."""
+    only: str = ""
+    """The callback because of which nothing else has been served for ``still``; "" for none."""
     goal: Nanoseconds | None = None
     """The moment at which a run that goes on will pause; None if there is none."""
 
@@ -117,6 +119,7 @@ def status_of(
         steps=steps,
         still=None if still is None else timeline.end - still.since,
         moves="" if still is None else short_thread(still.moves),
+        only="" if still is None else still.only,
         goal=run.goal if isinstance(run, LiveRun) else None,
     )
 
@@ -203,13 +206,16 @@ def _state(status: RunStatus, turn: int) -> TextRun:
     if status.state is RunState.STARTING:
         return TextRun(f"{_TURNING[turn % len(_TURNING)]} STARTING", _STRONG)
     if status.state is RunState.LIVE and status.still is not None:
-        return TextRun(f"✗ STUCK {duration(status.still)}{_still(status)}", _WARN)
+        state = "STARVED" if status.only else "STUCK"
+        return TextRun(f"✗ {state} {duration(status.still)}{_still(status)}", _WARN)
     if status.state is RunState.LIVE and status.goal is not None:
         return TextRun(f"● LIVE to {status.goal / 1e9:.9g} s", _STRONG)
     return _STATES[status.state]
 
 
 def _still(status: RunStatus) -> str:
+    if status.only:
+        return f", only {status.only} runs"
     return f", only {status.moves} moves" if status.moves else ", nothing moves"
 
 

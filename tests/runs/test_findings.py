@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from cbtui.runs.live.findings import FindingsMonitor, problem_count_text
+from cbtui.runs.live.findings import FindingsMonitor, Standstill, problem_count_text
 from cbtui.widgets.diagnosis import Diagnosis, DiagnosisLevel, with_worst_problem
 from sim.diagnosis import Diagnoses, Explanation, Finding, Weight
 from sim.diagnosis.rule import Rule
@@ -42,7 +42,7 @@ def calling(*, beats: bool, logs: bool = False, answers_in: float = 0.0) -> Find
 
 def test_nothing_moves_once_all_that_runs_is_stuck() -> None:
     watch = calling(beats=False)
-    assert watch.standstill() == (ns(1.0), "")
+    assert watch.standstill() == Standstill(ns(1.0))
     stuck = watch.stuck_at(ns(1.5))
     assert stuck is not None
     assert len(stuck.ring) == 4
@@ -68,7 +68,44 @@ def test_a_program_of_which_a_part_goes_on_still_moves() -> None:
 
 def test_of_a_program_that_logs_the_thread_that_does_is_said_to_move() -> None:
     watch = calling(beats=False, logs=True)
-    assert watch.standstill() == (ns(1.0), "server")
+    assert watch.standstill() == Standstill(ns(1.0), "server")
+
+
+_POLLS = """
+import time
+import rclpy
+
+ready = []
+
+
+def work():
+    WAIT
+
+
+rclpy.init()
+node = rclpy.create_node("poller")
+node.create_timer(1.0, work)
+node.create_timer(0.2, lambda: ready.append(1) if node.get_clock().now().nanoseconds < 0 else None)
+rclpy.spin(node)
+"""
+
+
+@pytest.mark.parametrize(
+    ("wait", "until", "only"),
+    [
+        ("while not ready: time.sleep(0.01)", 1.9, ""),
+        ("while not ready: time.sleep(0.01)", 2.1, "work"),
+        ("time.sleep(5.0)", 2.1, ""),
+    ],
+    ids=["not yet", "polls", "sleeps"],
+)
+def test_a_callback_that_polls_while_all_others_wait_for_it_starves_them(
+    wait: str, until: float, only: str, tmp_path: Path
+) -> None:
+    watch = FindingsMonitor(run_program(tmp_path, _POLLS.replace("WAIT", wait), until).timeline)
+    watch.update()
+    still = watch.standstill()
+    assert (still.only if still else "") == only
 
 
 _KEEPS = """

@@ -91,6 +91,7 @@ def test_a_program_in_which_nothing_moves_is_not_only_live() -> None:
     still = replace(LIVE, still=ns(4.1))
     assert "✗ STUCK 4.1 s, nothing moves" in line(still, 100)
     assert "✗ STUCK 4.1 s, only Thread-1 moves" in line(replace(still, moves="Thread-1"), 100)
+    assert "✗ STARVED 4.1 s, only tick runs" in line(replace(still, only="tick"), 100)
     assert "◂ BACK 2.0 s" in line(replace(still, back=ns(2.0)), 100)
 
 

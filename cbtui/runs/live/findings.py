@@ -7,6 +7,8 @@ from typing import NamedTuple
 
 from sim.diagnosis import Diagnoses, Explanation, Finding, Weight
 from sim.diagnosis.edits.flags import only_sleeps
+from sim.diagnosis.time_limits import ends_by_itself, time_limit
+from sim.diagnosis.words import who
 from sim.quantities.plural import counted
 from sim.trace.events import Doing, Logged
 from sim.trace.model import Nanoseconds, Window
@@ -61,10 +63,14 @@ class ExplainedFinding:
 
 
 class Standstill(NamedTuple):
-    """All callbacks that still run are stuck; ``moves`` is the one thread that goes on beside them, or ""."""
+    """All callbacks that still run are stuck; ``moves`` is the one thread that goes on beside them, or "".
+
+    ``only`` is a callback that may go on, and because of which nothing else is served; "" for none.
+    """
 
     since: Nanoseconds
     moves: str = ""
+    only: str = ""
 
 
 class FindingsMonitor:
@@ -98,10 +104,12 @@ class FindingsMonitor:
         return next((found for found in endless if found.known_at <= at), None)
 
     def standstill(self) -> Standstill | None:
-        """Since when all callbacks that run are stuck; None if others run, or several threads move."""
+        """Since when all callbacks that run are stuck, or one starves all; None if others run, or move."""
         timeline = self._timeline
         found = self.stuck_at(timeline.end)
-        if found is None or timeline.end - found.at < _STANDS_STILL:
+        if found is None:
+            return self._starved()
+        if timeline.end - found.at < _STANDS_STILL:
             return None
         stuck = {
             entity for each in self.findings if each.explanation.for_ever for entity in each.finding.stuck
@@ -114,6 +122,21 @@ class FindingsMonitor:
         if len(moving) > 1 or "" in moving:
             return None
         return Standstill(found.at, *moving)
+
+    def _starved(self) -> Standstill | None:
+        """Since when others wait for the only callback that runs, in a loop or wait that others may end."""
+        timeline = self._timeline
+        since = Window(timeline.end - _STANDS_STILL, timeline.end + 1)
+        ran = [span for thread in timeline.threads for span in timeline.spans_on(thread, since)]
+        at = timeline.position_on(ran[0].thread, timeline.end) if len(ran) == 1 else None
+        if at is None or ran[0].start > since.start:
+            return None
+        polls = at.loop[0] and not ends_by_itself(*at.loop)
+        if not polls and (at.doing is not Doing.WAITS or time_limit(at)):
+            return None
+        waiting = timeline.moment(timeline.end).waiting.items()
+        kept = [wait.since for each, wait in waiting if wait.holder == at.entity != each]
+        return Standstill(min(kept), only=who(at.entity, timeline)) if kept else None
 
     def _threads_logging(self, since: Nanoseconds) -> set[str]:
         """The threads that have logged, "" for an unknown one."""
