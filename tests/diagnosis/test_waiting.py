@@ -497,3 +497,17 @@ def test_a_done_callback_that_waits_for_a_reply_on_the_only_thread_is_a_deadlock
         "MultiThreadedExecutor(num_threads=2)"
     )
     assert str(told.place) == "node.py:19"
+
+
+def test_a_task_that_waits_for_what_the_only_thread_would_run_is_said_to(tmp_path: Path) -> None:
+    source = WAITS_IN_A_TASK.replace("WAIT", "self.done.wait(1.8)").replace("import time", "import threading")
+    beats = "self.create_timer(0.3, self.beat)\n        self.done = threading.Event()"
+    source = source.replace("    def ask", "    def beat(self):\n        self.done.set()\n\n    def ask")
+    source = source.replace("self.create_timer(1.0", f"{beats}\n        self.create_timer(1.0")
+    source = source.replace(
+        "def answered(self, future):\n", "def answered(self, future):\n        self.done.clear()\n"
+    )
+    timeline = run_program(tmp_path, source, 6.0).timeline
+    (told,) = (each.explained(timeline) for each in diagnose(timeline) if each.rule.id == "no-free-worker")
+    assert told.why.endswith(", and answered waits for what beat sets")
+    assert told.cure == "spin with MultiThreadedExecutor(num_threads=2)"

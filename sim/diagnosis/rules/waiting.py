@@ -1,7 +1,7 @@
 """Rules on callbacks that were ready and did not run."""
 
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import ClassVar
 
 from sim.diagnosis.awaits import awaits_in_vain, awaits_in_vain_since, let_complete
@@ -149,9 +149,7 @@ class GroupStarvation(KeptWaiting):
         waited = self._waiting(found, timeline)
         mover = who_moves(waited, found.culprit, timeline)
         room = remedy_for_waits(waited, mover, Window(found.at, found.until), timeline)
-        place = line_of(found.culprit, Window(found.at, found.until), timeline)
-        setters = event_setters(place.file, place.first_line) if place else ()
-        awaited = [each for each in (who(each, timeline) for each in waited) if each in setters]
+        awaited = _awaited(found, waited, timeline)
         why = f"{_admission(found.subject, timeline)}, however many threads are free"
         sooner = let_return(found.culprit, Window(found.at, found.until), timeline)
         cure = f"{room.words(timeline)}; or {sooner}"
@@ -164,10 +162,18 @@ class GroupStarvation(KeptWaiting):
         held = f"{group} was held by {culprit}{busy}"
         window = Window(found.at, found.until)
         if (since := awaits_in_vain_since(found.culprit, window, timeline)) is not None:
+            place = line_of(found.culprit, window, timeline)
             held = f"{awaits_in_vain(culprit, place, since)}, and keeps {group} meanwhile"
             room = Remedy((found.culprit,))
             cure = f"{room.words(timeline)}, and {let_complete(place)}"
         return self._explained(found, timeline, held, why, cure, room)
+
+
+def _awaited(found: Finding, waited: Sequence[EntityId], timeline: Timeline) -> list[str]:
+    """Return which of those that waited set what the culprit waits for, as its source shows."""
+    place = line_of(found.culprit, Window(found.at, found.until), timeline)
+    setters = event_setters(place.file, place.first_line) if place else ()
+    return [each for each in (who(each, timeline) for each in waited) if each in setters]
 
 
 class NoFreeWorker(KeptWaiting):
@@ -212,6 +218,8 @@ class NoFreeWorker(KeptWaiting):
         else:
             busy = f"all threads were busy, one with {culprit}"
         why = "its group would have let it in, but a callback also needs a thread to run on"
+        if awaited := _awaited(found, self._waiting(found, timeline), timeline):
+            why, cure = f"{why}, and {culprit} waits for what {listed(awaited)} sets", room.words(timeline)
         return self._explained(found, timeline, busy, why, cure, room)
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
