@@ -272,7 +272,7 @@ def _begun(span: Span, deed: Deed, timeline: Timeline, *, returns: bool) -> Iter
         return
     reasons = [
         f"{is_free}: {entity.spoken_name} {_readiness(entity, span)}",
-        *_why_first(entity, _left(timeline, span.start), timeline),
+        *_why_first(entity, [*_left(timeline, span.start), *_passed_over(span, timeline)], timeline),
     ]
     if _asks_groups(timeline):
         reasons.append(f"{group_of(entity.id, timeline)} lets it in")
@@ -299,11 +299,22 @@ def _why_first(entity: EntityInfo, left: Sequence[Wait], timeline: Timeline) -> 
     others = [
         timeline.entities[wait.entity]
         for wait in left
-        if wait.reason is Reason.NO_FREE_WORKER and wait.entity != entity.id
+        if (wait.reason is Reason.NO_FREE_WORKER or wait.is_for_own_call) and wait.entity != entity.id
     ]
     if others:
         is_first = all(_place(entity) < _place(other) for other in others)
         yield _IN_ORDER[entity.kind] if is_first else "it was ready when the executor last looked"
+
+
+def _passed_over(span: Span, timeline: Timeline) -> Iterator[Wait]:
+    """The waits of those that were ready before a call began and whose turn on its thread came at once after.
+
+    What waited for its own last call had only the turn to wait for, once that was over.
+    """
+    at = Window(max(0, span.start - 1), span.start + 1)
+    calls = (each for each in timeline.spans_on(span.thread, at) if each.start == span.start)
+    for entity in {each.entity for each in calls if each.number > span.number}:
+        yield from (each for each in timeline.waits_of(entity, at) if each.end == span.start)
 
 
 def _by_cause(left: Sequence[Wait], timeline: Timeline, at: Nanoseconds) -> Iterator[str]:

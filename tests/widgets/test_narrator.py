@@ -284,6 +284,22 @@ def test_a_callback_that_its_own_last_call_keeps_waiting_is_told() -> None:
     )
 
 
+def test_what_goes_before_a_timer_that_is_due_again_was_ready_at_the_executors_last_look() -> None:
+    run = Run()
+    group, thread = run.exclusive(run.node("/n")), run.thread("MainThread")
+    tick, heard = run.timer(group, "tick", 1.0), run.subscription(group, "/a", "heard")
+    run.callback(tick, thread, 1.0, 3.0)
+    run.message(heard, 1.5)
+    run.wait(heard, 1.5, 4.0, Reason.GROUP_HELD, tick)
+    run.wait(tick, 2.0, 4.0, Reason.GROUP_HELD, tick)
+    run.callback(heard, thread, 4.0, 0.0)
+    run.callback(tick, thread, 4.0, 0.5)
+    returned, first, second, *_ = narration(told(run), ns(4.0))
+    assert returned == "4.000 s: tick returns after 3.0 s, group A is free"
+    assert "heard has a message, 2.5 s old, it was ready when the executor last looked, group A" in first
+    assert "last looked" not in second
+
+
 def test_a_callback_that_stands_in_its_call_is_told_after_it_has_begun_to() -> None:
     run = Run()
     group, thread = run.exclusive(run.node("/n")), run.thread("MainThread")
