@@ -23,7 +23,7 @@ from cbtui.widgets.lanes.painter import LanePainter
 from cbtui.widgets.lanes.rows import GroupLane, MemberLane, SoleLane, all_lanes
 from cbtui.widgets.lanes.service_calls import LatestCalls
 from cbtui.widgets.lanes.status import LaneStatus
-from cbtui.widgets.narration import narration
+from cbtui.widgets.narrator.narration import narration
 from cbtui.widgets.scene import paint_scene
 from lessons.catalogue import lessons
 from lessons.description import Actor

@@ -16,7 +16,7 @@ from cbtui.widgets.diagnosis import (
 from cbtui.widgets.diagnosis_line import diagnosis_row, diagnosis_rows
 from cbtui.widgets.factory.scene import scene_of
 from cbtui.widgets.factory.texts import blocked_texts
-from cbtui.widgets.narration import narration
+from cbtui.widgets.narrator.narration import narration
 from sim.diagnosis import RULES, CodeLocation, Explanation, Finding
 from sim.diagnosis import Weight as RuleWeight
 from sim.diagnosis.words import threads_needed

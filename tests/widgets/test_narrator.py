@@ -11,8 +11,8 @@ from cbtui.looks.theme import GLYPHS, Charset
 from cbtui.runs.live.playhead import Playhead
 from cbtui.text.cells import visible
 from cbtui.widgets.diagnosis import diagnosis_at
-from cbtui.widgets.narration import decisions_at, narration
-from cbtui.widgets.narrator import ROWS, Narrator
+from cbtui.widgets.narrator.narration import decisions_at, narration
+from cbtui.widgets.narrator.narrator import ROWS, Narrator
 from sim.trace.events import (
     AnyEvent,
     CallbackAt,

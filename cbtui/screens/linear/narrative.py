@@ -9,7 +9,9 @@ from cbtui.screens.parts.copying import what_runs
 from cbtui.widgets.diagnosis import response_of
 from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.log.line import line_of
-from cbtui.widgets.narration import narration, returning, waiting
+from cbtui.widgets.narrator.decisions import returning
+from cbtui.widgets.narrator.narration import narration
+from cbtui.widgets.narrator.waits import waiting
 from sim.diagnosis import location_text, with_stop
 from sim.quantities.durations import duration, timestamp
 from sim.quantities.nanoseconds import SECOND

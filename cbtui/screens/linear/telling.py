@@ -14,7 +14,7 @@ from cbtui.screens.parts.navigation import TimeNavigation
 from cbtui.screens.parts.part import ScreenPart
 from cbtui.screens.parts.runs import RunController
 from cbtui.widgets.diagnosis import diagnosis_on_screen
-from cbtui.widgets.narration import narration
+from cbtui.widgets.narrator.narration import narration
 from sim.files.untrusted import program_text
 from sim.quantities.durations import duration, timestamp
 from sim.trace.events import AnyEvent, KeyboardAsked, TimeHalted

@@ -10,8 +10,8 @@ from cbtui.screens.parts.runs import RunController
 from cbtui.widgets.code import CodeView, Step
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.rows import NONE_KEPT
-from cbtui.widgets.narration import decided_about, decisions_at
-from cbtui.widgets.narrator import Narrator
+from cbtui.widgets.narrator.narration import decided_about, decisions_at
+from cbtui.widgets.narrator.narrator import Narrator
 from sim.trace.events import EntityId, ThreadId
 
 

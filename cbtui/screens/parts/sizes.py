@@ -12,7 +12,7 @@ from cbtui.screens.parts.panes import LANES_ALONE, PANE_ALONE, WITHOUT_ROBOT, Pa
 from cbtui.screens.parts.part import ScreenPart
 from cbtui.screens.sized import SizedScreen
 from cbtui.widgets.lanes import Lanes
-from cbtui.widgets.narrator import ROWS, Narrator
+from cbtui.widgets.narrator.narrator import ROWS, Narrator
 from cbtui.widgets.robot import RobotView
 from lessons.personal import state_folder
 from lessons.state_file import StateFile, StateFileTexts

@@ -13,7 +13,7 @@ from cbtui.app import CbtuiApp
 from cbtui.screens.windows.moment import MomentScreen, seconds_in
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.lanes import Lanes
-from cbtui.widgets.narrator import Narrator
+from cbtui.widgets.narrator.narrator import Narrator
 from sim.engine.commands import Pause, RunUntil, SetSpeed, Step
 from sim.trace.events import TimeHalted
 from sim.trace.model import Window

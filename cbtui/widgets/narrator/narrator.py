@@ -7,7 +7,7 @@ from textual.reactive import reactive
 
 from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, TextRun
 from cbtui.text.cells import MOST_COLUMNS, fit, lines_of_text
-from cbtui.widgets.narration import decisions_at, narration
+from cbtui.widgets.narrator.narration import decisions_at, narration
 from cbtui.widgets.painted_widget import PaintedWidget, painted
 from sim.quantities.durations import timestamp
 from sim.trace.model import Nanoseconds

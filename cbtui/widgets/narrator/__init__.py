@@ -1,0 +1,1 @@
+"""The narrator: what the executor decided and why, rule by rule."""
