@@ -59,25 +59,25 @@ class DeadlockOverParameter(Rule):
             is_long = blocked.end is None and view.end - blocked.start >= self.threshold
             kept = _kept_by_parameters(blocked, view) if is_long and not blocked.entity else 0
             file = view.timeline.entities[kept].made_at[0] if kept else ""
-            function, line = calls_on_parameters(file)
+            _, line = calls_on_parameters(file)
             nodes = {call.service.rpartition("/")[0] for call in asked if call.sent <= blocked.start}
             if line and node_name(view.timeline.entities[kept].node, view.timeline) in nodes:
-                about, stuck = f"{function} {blocked.service}", frozenset((kept,))
                 yield Finding(
                     self,
                     blocked.start,
                     view.end,
                     kept,
-                    about=about,
+                    about=blocked.service,
                     detail=file,
                     size=line,
                     thread=blocked.thread,
-                    stuck=stuck,
+                    stuck=frozenset((kept,)),
                 )
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        function, service = found.about.split()
-        subject, client = who(found.subject, timeline), f"the client of {service}"
+        function, _ = calls_on_parameters(found.detail)
+        subject, service = who(found.subject, timeline), found.about
+        client = f"the client of {service}"
         wait = timeline.moment(found.until).waiting.get(found.subject)
         is_held = wait is None or wait.reason is Reason.GROUP_HELD
         kept = f"{group_of(found.subject, timeline)}, which the setting of parameters holds"
