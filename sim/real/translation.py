@@ -7,6 +7,7 @@ from itertools import count
 import msgspec
 
 from sim.real.arrivals import Arrivals, SentMessage
+from sim.real.hung_callbacks import HungCallbacks
 from sim.real.left_open import LeftOpen
 from sim.real.sampled_positions import position_of
 from sim.real.wire import (
@@ -75,6 +76,7 @@ class Translation:
         """The latest calls whose replies were told of."""
         self._lost: dict[int, int] = {}
         self._left_open = LeftOpen()
+        self._hung = HungCallbacks()
 
     def begin_at(self, moment: int) -> None:
         """Have the run begin, if it has not yet: at ``moment``, or when the first known node appeared."""
@@ -113,7 +115,10 @@ class Translation:
             t, _, line = heapq.heappop(self._held)
             for event in self._translated(line, max(0, t - self._start)):
                 self._left_open.follow(event)
+                self._hung.follow(event)
                 self._record(event)
+        for notice in self._hung.look(until - self._start):
+            self._record(notice)
 
     def _translated(self, line: ProbeLine, t: int) -> Iterator[AnyEvent]:
         arrivals = self._arrivals

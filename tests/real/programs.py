@@ -254,16 +254,17 @@ def run(
     ground: str = "ros2",
     seconds: float = 3.3,
     threads: int | None = None,
+    clock: str = "virtual",
 ) -> Run:
     """Run a program on a ground for some of its seconds; its service is called at the times given.
 
-    ``threads`` replaces the number of threads of its executor.
+    ``threads`` replaces the number of threads of its executor; ``clock`` is the model's.
     """
     path = folder / "tried.py"
     path.write_text(HEAD + body + TAIL.format(executor=executor))
     return run_to_end(
         msgspec.structs.replace(
-            program_setup(path, seconds, clock="real" if ground == "ros2" else "virtual"),
+            program_setup(path, seconds, clock="real" if ground == "ros2" else clock),
             real=RealRos() if ground == "ros2" else None,
             threads=threads,
             calls=tuple(TimedCall(round(at * SECOND), data=True) for at in calls),

@@ -1,0 +1,82 @@
+"""Tells of callbacks on real rclpy that wait and do not go on, in the words of the model's watchdog."""
+
+from collections.abc import Iterator
+
+import msgspec
+
+from sim.engine.callback_positions import LOCK
+from sim.probes.own_code import place_text
+from sim.quantities.durations import timestamp
+from sim.trace.events import (
+    AnyEvent,
+    CallbackAt,
+    CallbackEnded,
+    CallbackSuspended,
+    Doing,
+    Nanoseconds,
+    Notice,
+    NoticeKind,
+    RunEnding,
+    Severity,
+    ThreadId,
+)
+
+_PATIENCE = 1_500_000_000
+"""Nanoseconds without a step from which on a wait is told, as on the model."""
+
+
+class HungCallbacks:
+    """Follows where callbacks are, and tells once of each wait without a timeout that lasts.
+
+    Waits for locks are left to the rules on them.
+    """
+
+    def __init__(self) -> None:
+        self._at: dict[ThreadId, CallbackAt] = {}
+        """Where callbacks are, since the first event that had them there."""
+        self._told: set[ThreadId] = set()
+        self._is_over = False
+
+    def follow(self, event: AnyEvent) -> None:
+        """Follow an event of the trace."""
+        match event:
+            case CallbackAt():
+                known = self._at.get(event.thread)
+                if known is not None and _where(known) == _where(event):
+                    event = msgspec.structs.replace(event, t=known.t)
+                else:
+                    self._told.discard(event.thread)
+                self._at[event.thread] = event
+            case CallbackEnded() | CallbackSuspended():
+                self._at.pop(event.thread, None)
+                self._told.discard(event.thread)
+            case RunEnding():
+                self._is_over = True
+
+    def look(self, t: Nanoseconds) -> Iterator[Notice]:
+        """Yield the notices that are due."""
+        for thread, at in () if self._is_over else self._at.items():
+            waits = at.doing is Doing.WAITS and at.call != LOCK and not at.until
+            if waits and t - at.t >= _PATIENCE and thread not in self._told:
+                self._told.add(thread)
+                yield _notice(at, t)
+
+
+def _where(at: CallbackAt) -> tuple[object, ...]:
+    return at.entity, at.call, at.frames
+
+
+def _notice(at: CallbackAt, t: Nanoseconds) -> Notice:
+    problem = f"has not come back since {timestamp(at.t)}"
+    file, function, line = at.frames[-1]
+    what = f"it waits in {at.call}(); its thread serves nothing else meanwhile"
+    text = f"{at.frames[0][1]} {problem} ({place_text(file, function, line)}): {what}"
+    return Notice(
+        t,
+        Severity.WARN,
+        text,
+        at.entity,
+        kind=NoticeKind.NO_PROGRESS,
+        problem=problem,
+        thread=at.thread,
+    )
