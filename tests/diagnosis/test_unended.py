@@ -174,3 +174,74 @@ def test_locks_in_opposite_orders_are_worth_a_remark_where_callbacks_may_run_at_
         [f"one takes {first[:6]} and then {second[:6]}, two first {second[:6]} and then {first[:6]}"] * told
     )
     assert all(each.weight_in(timeline) is Weight.REMARK for each in found)
+
+
+ASKED = """
+import rclpy
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.node import Node
+from rclpy.task import Future
+from std_srvs.srv import Trigger
+
+class Desk(Node):
+    def __init__(self):
+        super().__init__("desk")
+        self.pending = Future()
+        own, another = MutuallyExclusiveCallbackGroup(), MutuallyExclusiveCallbackGroup()
+        self.create_service(Trigger, "confirm", self.on_confirm, callback_group=own)
+        self.client = self.create_client(Trigger, "confirm", callback_group=another)
+        self.create_timer({period}, self.press, callback_group={group})
+        self.once = self.create_timer(1.0, self.ask, callback_group=another)
+
+    async def on_confirm(self, request, response):
+        await self.pending
+        return response
+
+    def ask(self):
+        self.once.cancel()
+        self.client.call_async(Trigger.Request())
+
+    def press(self):
+        {press}
+
+rclpy.init()
+rclpy.spin(Desk())
+"""
+
+
+@pytest.mark.parametrize(
+    ("period", "group", "press", "weight", "clause"),
+    [
+        (
+            60.0,
+            "another",
+            "pass",
+            Weight.PROBLEM,
+            ": nothing in node.py completes self.pending, which line 11",
+        ),
+        (60.0, "another", "self.pending.set_result(1)", Weight.REMARK, "let press complete it"),
+        (
+            60.0,
+            "own",
+            "self.pending.set_result(1)",
+            Weight.PROBLEM,
+            "give on_confirm a callback group of its own",
+        ),
+        (4.5, "another", "self.pending.set_result(1)", None, ""),
+    ],
+    ids=["never", "maybe later", "by what its group keeps out", "came"],
+)
+def test_a_service_that_awaits_in_vain_is_told_and_a_problem_only_if_that_is_sure(
+    period: float, group: str, press: str, weight: Weight | None, clause: str, tmp_path: Path
+) -> None:
+    source = ASKED.format(period=period, group=group, press=press)
+    timeline = Timeline()
+    timeline.extend(run_program(tmp_path, source, seconds=6).events)
+    found = [each for each in diagnose(timeline) if each.rule.id == "reply-awaits-in-vain"]
+    assert [each.weight_in(timeline) for each in found] == ([weight] if weight else [])
+    for each in found:
+        told = each.explained(timeline)
+        assert "on_confirm awaits self.pending, which has not come so far, since 1.000 s" in told.what
+        assert "/confirm has not answered" in told.what
+        assert clause in told.cure
+        assert str(told.place) == "node.py:19"

@@ -76,6 +76,7 @@ _NAMES = {
     "never-destroyed": "timers or the like that pile up",
     "never-synchronised": "synchroniser that never fires",
     "unreturned-response": "missing answer",
+    "reply-awaits-in-vain": "await in a service that does not end",
     "spin-past-executor": "spin of another executor",
     "lookup-keeps-transform": "lookup that keeps out its transform",
 }

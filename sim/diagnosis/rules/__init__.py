@@ -43,7 +43,7 @@ from sim.diagnosis.rules.timing import (
     OverrunTimer,
 )
 from sim.diagnosis.rules.transforms import LookupKeepsTransform
-from sim.diagnosis.rules.unended import ThreadWaitsForNobody, WaitsForLock
+from sim.diagnosis.rules.unended import ReplyAwaitsInVain, ThreadWaitsForNobody, WaitsForLock
 from sim.diagnosis.rules.unspun import NodeNeverSpins, SpinPastExecutor, SpinsTooRarely
 from sim.diagnosis.rules.waiting import BehindOthers, GroupStarvation, NoFreeWorker
 
@@ -83,6 +83,7 @@ RULES: tuple[Rule, ...] = (
     ExceptionSwallowed(),
     ExceptionCaught(),
     UnreturnedResponse(),
+    ReplyAwaitsInVain(),
     CancelIgnored(),
     GoalNeverExecuted(),
     NeverDestroyed(),

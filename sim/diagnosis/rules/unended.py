@@ -1,17 +1,36 @@
 """Waits for what nothing in their file sets, and for locks that nobody may ever release."""
 
 from collections.abc import Iterator
+from operator import attrgetter
 from pathlib import Path
 
+from sim.diagnosis.awaits import awaits_in_vain, let_complete
 from sim.diagnosis.cures import Remedy
-from sim.diagnosis.edits.flags import never_set, parties_at, set_parties, wait_at_most
-from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, by_edit, line_of
+from sim.diagnosis.edits.flags import (
+    event_setters,
+    never_completed,
+    never_set,
+    parties_at,
+    set_parties,
+    wait_at_most,
+)
+from sim.diagnosis.lasting_waits import lasting_awaits
+from sim.diagnosis.rule import (
+    CodeLocation,
+    Explanation,
+    Finding,
+    Rule,
+    Weight,
+    by_edit,
+    entity_of,
+    line_of,
+)
 from sim.diagnosis.time_limits import time_limit
 from sim.diagnosis.timeline_view import TimelineView
-from sim.diagnosis.words import listed, who
+from sim.diagnosis.words import group_of, listed, often, who
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
-from sim.trace.events import EntityId, GroupKind, Notice, NoticeKind, OwnThreadAt
+from sim.trace.events import EntityId, EntityKind, GroupKind, Notice, NoticeKind, OwnThreadAt
 from sim.trace.model import Position, Window
 from sim.trace.timeline import Timeline
 
@@ -87,6 +106,70 @@ class ThreadWaitsForNobody(Rule):
             cure,
             CodeLocation(file, line, line),
         )
+
+
+class ReplyAwaitsInVain(Rule):
+    """The callback of a service that is called has awaited for long what is no reply to a call of its own.
+
+    Whether that ever comes is unknown, unless nothing completes it, or only what its own group keeps out.
+    """
+
+    id = "reply-awaits-in-vain"
+    summary = "a service's callback awaits what does not come, and its caller has no reply"
+    is_effect = True
+    threshold = 3 * SECOND
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each such callback, since its oldest await."""
+        calls = view.now.pending_calls
+        for entity in view.few_entities if calls else ():
+            asked = sum(each.service == entity.name for each in calls)
+            if entity.kind is not EntityKind.SERVICE or not asked or entity.id in (e.caller for e in calls):
+                continue
+            at = min(
+                lasting_awaits(entity.id, view.end, view.timeline), key=attrgetter("start"), default=None
+            )
+            if at is not None and at.end is None and view.end - at.start >= self.threshold:
+                yield Finding(self, at.start, view.end, entity.id, entity.id, size=asked)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        subject, service = who(found.subject, timeline), entity_of(found, timeline).name
+        place, kept = _awaits_at(found, timeline), _kept_out(found, timeline)
+        keeps, cure, remedies = "", let_complete(place), tuple[Remedy, ...]()
+        if kept:
+            group, room = group_of(found.subject, timeline), Remedy((found.subject,))
+            keeps = f", and keeps {group} meanwhile, in which {listed(kept)} would complete it"
+            cure, remedies = f"{room.words(timeline)}, so that {listed(kept)} can run", (room,)
+        calls = often(found.size, "calls")
+        return Explanation(
+            f"{awaits_in_vain(subject, place, found.at)}{keeps}: {service} has not answered{calls}",
+            "a service's reply is sent when its callback returns, also that of an async one",
+            cure,
+            place,
+            remedies=remedies,
+        )
+
+    def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
+        """Irrelevant if it came, or where others wait for it, which is told; a remark if it may come."""
+        waits = timeline.moment(found.until).waiting.values()
+        if found.until < timeline.end or any(each.holder == found.subject != each.entity for each in waits):
+            return None
+        place = _awaits_at(found, timeline)
+        is_sure = _kept_out(found, timeline) or (place and never_completed(place.file, place.first_line)[0])
+        return self.weight if is_sure else Weight.REMARK
+
+
+def _awaits_at(found: Finding, timeline: Timeline) -> CodeLocation | None:
+    return line_of(found.subject, Window(found.at, found.until + 1), timeline)
+
+
+def _kept_out(found: Finding, timeline: Timeline) -> list[str]:
+    """Return what would complete the future that a callback awaits, if its own group keeps all of it out."""
+    place, group = _awaits_at(found, timeline), timeline.entities[found.subject].group
+    enders = event_setters(place.file, place.first_line) if place else ()
+    mates = {each.spoken_name for each in timeline.group_members(group)}
+    is_exclusive = timeline.groups[group].kind is GroupKind.EXCLUSIVE
+    return [*enders] if is_exclusive and mates.issuperset(enders) else []
 
 
 class WaitsForLock(Rule):
