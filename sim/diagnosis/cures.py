@@ -27,6 +27,10 @@ class Remedy:
     edit: CodeEdit | None = None
     again: bool = False
 
+    def __bool__(self) -> bool:
+        """Whether there is anything to try."""
+        return self != Remedy()
+
     def words(self, timeline: Timeline) -> str:
         """Return the changes as a clause; empty for none."""
         advice = [] if self.edit is None else [self.edit.words]

@@ -111,6 +111,24 @@ async def test_beside_a_cure_that_helps_another_one_is_being_tried() -> None:
         await press(pilot, "escape")
 
 
+async def test_a_cure_is_tried_once_it_is_known_also_of_a_problem_that_is_listed_already() -> None:
+    class AsKnown(Trial):
+        def cures(self, told: ExplainedFinding) -> Sequence[Cure]:
+            return (EDIT,) if told.explanation.remedies else ()
+
+    async with console() as (app, pilot):
+        (told, *_), trial = told_of(shared_group_run().until(TURNED)), AsKnown()
+        at_first = replace(told, explanation=replace(told.explanation, remedies=()))
+        shown = [at_first]
+        screen = DiagnosesScreen((at_first,), Charset.BRAILLE, trial, latest=lambda: tuple(shown))
+        await app.push_screen(screen)
+        await app.workers.wait_for_complete()
+        assert "tried, it helps" not in text_of(app)
+        shown[:] = [told]
+        await until(pilot, lambda: "→ tried, it helps: let it sleep less" in text_of(app))
+        await press(pilot, "escape")
+
+
 async def test_while_a_trial_stands_still_its_time_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
     class Endless(Trial):
         def judge(self, told: ExplainedFinding, cure: Cure, note: Callable[[int], object]) -> Verdict:
@@ -256,6 +274,50 @@ def test_what_was_tried_for_a_run_is_not_tried_again_when_the_window_is_opened_a
     runs.run = SimpleNamespace(timeline=timeline)
     assert trials.begin().judge(found, APART).helps
     assert len(tried) == 4
+
+
+def test_a_problem_that_comes_while_the_window_is_open_is_tried_up_to_where_it_shows(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    events, timeline = shared_group_run().until(TURNED), Timeline()
+    (found, *_) = told_of(events)
+    runs: Any = SimpleNamespace(timeline=timeline, run=SimpleNamespace(timeline=timeline))
+    restarts: Any = SimpleNamespace(changes=Changes())
+    trial = CureTrials(runs, restarts, cast("ShownProgram", None), lambda: None).begin()
+    timeline.extend(events)
+    problem = problem_of(found.finding, timeline)
+
+    def run_with(trial: CureTrial, changes: Changes, *_rest: object) -> TriedRun:
+        shows = trial.until > timeline.end and not changes.threads
+        return TriedRun({problem: False} if shows else {}, end=trial.until)
+
+    monkeypatch.setattr(CureTrial, "_try", run_with)
+    assert trial.until < timeline.end
+    assert trial.judge(found, APART).helps
+
+
+@pytest.mark.slow
+def test_a_cure_that_lets_a_slow_timer_end_a_wait_is_tried_until_that_comes(tmp_path: Path) -> None:
+    program = tmp_path / "node.py"
+    program.write_text(
+        "import queue\nimport rclpy\nrclpy.init()\nnode = rclpy.create_node('writer')\n"
+        "full = queue.Queue(1)\nfull.put(0)\n"
+        "def fill():\n    full.put(1)\n"
+        "def drain():\n    full.get()\n"
+        "node.create_timer(0.5, fill)\nnode.create_timer(0.7, print)\n"
+        "node.create_timer(6.0, drain)\nrclpy.spin(node)\n"
+    )
+    subject = of_file(program, (), "virtual")
+    setup = subject.set_up(None, None)
+    ran = run_to_end(msgspec.structs.replace(setup, until=2 * SECOND))
+    (found, *_) = told_of(ran.events)
+    material = SimpleNamespace(batches=lambda: ())
+    run = SimpleNamespace(timeline=ran.timeline, setup=setup, material=lambda: material)
+    runs: Any = SimpleNamespace(timeline=ran.timeline, run=run)
+    restarts: Any = SimpleNamespace(changes=Changes())
+    trial = CureTrials(runs, restarts, subject, lambda: None).begin()
+    (cure,) = trial.cures(found)
+    assert trial.judge(found, cure).helps
 
 
 @pytest.mark.slow

@@ -41,6 +41,8 @@ _LONGEST: Nanoseconds = 40 * SECOND
 _LONGEST_REAL: Nanoseconds = 8 * SECOND
 _SHOWS: Nanoseconds = 3 * SECOND
 """How long a trial goes on after now: on virtual time a wait is told later than on the real clock."""
+_COMES_SOON: Nanoseconds = 10 * SECOND
+"""A timer of at most this period, which may be what a cure lets run, is called once in all that time."""
 
 _PAIRS = 6
 """How many pairs of cures are tried of which none helps alone."""
@@ -78,7 +80,9 @@ class CureTrials:
 
     def until(self) -> Nanoseconds:
         """Return the moment up to which a trial runs that begins now."""
-        return min(max(self.runs.timeline.end + _SHOWS, _SHORTEST), _LONGEST)
+        timeline = self.runs.timeline
+        periods = (each.period for each in timeline.entities.values() if each.period <= _COMES_SOON)
+        return min(max(timeline.end + max(_SHOWS, *periods, 0), _SHORTEST), _LONGEST)
 
     async def run(self, cure: Cure) -> None:
         """Run again with a cure and the same inputs, and compare with the run before."""
@@ -185,9 +189,12 @@ class CureTrial:
         return verdict if pair is None else Verdict(True, both=with_code(pair))
 
     def _without(self, problem: Problem, clock: str) -> TriedRun:
-        """Return the run without a cure; another one up to now, if the one before does not show a problem."""
+        """Return the run without a cure; another one up to now, if none before shows a problem.
+
+        The problem may have come about since the trial began, as while the window is open.
+        """
         before, now = self._before.get(clock), self.trials.until()
-        if before is not None and problem not in before.problems and now > self.until:
+        if (before is None or problem not in before.problems) and now > self.until:
             self.until, before = now, None
             self._before.clear()
             vars(self).pop("inputs", None)

@@ -92,8 +92,8 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
     A cure is offered once ``trial`` has found that it helps. ``lesson_on`` returns the lesson that shows a
     problem; it is offered after all trials, so that a key meant for a cure opens none. ``latest`` returns the
     current findings, or None once another run has begun: the list follows them, begins again when there is a
-    new problem, and closes with its run. ``as_of`` returns the time of the run that they are about, which may
-    have gone on since; ``beside`` what else is known of it, as a clause.
+    new problem, or a cure of one that had none, and closes with its run. ``as_of`` returns the time of the
+    run that they are about, which may have gone on since; ``beside`` what else is known of it, as a clause.
     """
 
     SCOPE = Scope.DIAGNOSES
@@ -180,7 +180,7 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         findings = self._findings if self._latest is None else self._latest()
         if findings is None:
             self.dismiss(None)
-        elif not _problems(findings) <= _problems(self._findings):
+        elif not _to_try(findings) <= _to_try(self._findings):
             self._list(findings)
             self._show_options()
             self._begin()
@@ -388,8 +388,11 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         return None if highlighted is None else self._rows[highlighted]
 
 
-def _problems(findings: Sequence[ExplainedFinding]) -> frozenset[object]:
-    return frozenset(each.finding.key for each in findings if each.is_problem)
+def _to_try(findings: Sequence[ExplainedFinding]) -> frozenset[object]:
+    """Return what identifies the problems, and those that have a cure, as some have only after a while."""
+    problems = [each for each in findings if each.is_problem]
+    curable = [each for each in problems if any(each.explanation.remedies)]
+    return frozenset(each.finding.key for each in problems) | {(each.finding.key,) for each in curable}
 
 
 def problems_note(findings: Sequence[ExplainedFinding], keymap: Keymap, charset: Charset) -> str:
