@@ -7,7 +7,7 @@ from pathlib import Path
 from cbtui.widgets.lanes.keys import USUAL_KEYS, LaneKeys
 from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.lanes.rows import GroupLane, MemberLane, ServiceLane, SoleLane, ThreadLane
-from cbtui.widgets.lanes.selection import Bar, Selection
+from cbtui.widgets.lanes.selection import Bar, Selection, end_of, start_of
 from sim.diagnosis.words import awaited_lock
 from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import called_by, doing_of, name_of, why_waiting
@@ -29,7 +29,11 @@ class BarDetails:
 
 
 def details_of(timeline: Timeline, bar: Bar, now: Nanoseconds) -> BarDetails:
-    """Describe a bar at the moment ``now``; open intervals end there."""
+    """Describe a bar at the moment ``now``; open intervals end there. A later bar is told as it will be."""
+    begins = start_of(bar)
+    if begins > now:
+        later = details_of(timeline, bar, end_of(bar) or timeline.end)
+        return BarDetails(later.title, (f"begins later, at {timestamp(begins)}", *later.facts))
     match bar:
         case Span():
             return BarDetails(_who_runs(timeline, bar), tuple(_of_span(timeline, bar, now)))
@@ -69,9 +73,7 @@ def _who_runs(timeline: Timeline, span: Span) -> str:
 
 
 def _of_span(timeline: Timeline, span: Span, now: Nanoseconds) -> Iterator[str]:
-    if span.start > now and span.end is None:
-        yield f"begins at {timestamp(span.start)}"
-    elif span.end is None or span.end > now >= span.start:
+    if span.end is None or span.end > now:
         took = _of_all(now - span.start, span, timeline)
         yield f"has run since {timestamp(span.start)}, for {took}"
     else:
@@ -202,13 +204,13 @@ def _reason(timeline: Timeline, wait: Wait) -> str:
 def _who_waits(timeline: Timeline, wait: Wait, now: Nanoseconds) -> str:
     lasts = wait.end is None or wait.end > now
     verb = "waits" if lasts else "waited"
-    if lasts and wait.start <= now < wait.since + WORTH_TELLING:
+    if lasts and now < wait.since + WORTH_TELLING:
         verb = "is ready"
     return f"{_with_letter(timeline, wait.entity)} {verb}"
 
 
 def _of_wait(timeline: Timeline, wait: Wait, now: Nanoseconds) -> Iterator[str]:
-    until = now if wait.end is None or wait.end > now >= wait.start else wait.end
+    until = now if wait.end is None or wait.end > now else wait.end
     yield f"{_of_all(until - wait.start, wait, timeline)} from {timestamp(wait.start)}"
     yield _reason(timeline, wait)
     since = waits_since(wait, timeline.queue(wait.entity, max(until - 1, wait.start)), timeline)
@@ -232,7 +234,7 @@ def _of_call(timeline: Timeline, call: Call, now: Nanoseconds) -> Iterator[str]:
     elif call.lost:
         yield "lost: nobody offered the service"
     else:
-        yield f"no reply for {duration(max(0, now - call.sent))}"
+        yield f"no reply for {duration(now - call.sent)}"
 
 
 def _call(timeline: Timeline, span: Span) -> Call | None:
@@ -247,7 +249,7 @@ def _call(timeline: Timeline, span: Span) -> Call | None:
 def _of_all(lasted: Nanoseconds, bar: Span | Wait, timeline: Timeline) -> str:
     """How long a bar has lasted at the cursor, and how long it lasts if that is known to be longer."""
     whole = duration(bar.end_at(timeline.end) - bar.start)
-    took = duration(max(0, lasted))
+    took = duration(lasted)
     return took if took == whole else f"{took} of {whole}"
 
 

@@ -88,9 +88,19 @@ def test_what_still_runs_is_measured_up_to_the_cursor() -> None:
     long = timeline.spans_on(1, Window(ns(5), ns(6)))[0]
     assert "has run since 4.000 s, for 8.9 s" in details_of(timeline, long, ns(12.9)).facts
     assert "has run since 4.000 s, for 2.0 s of 8.9 s" in details_of(timeline, long, ns(6)).facts
-    assert "begins at 4.000 s" in details_of(timeline, long, ns(3)).facts
     wait = next(iter(timeline.moment(ns(6)).waiting.values()))
     assert "2.0 s of 8.9 s from 4.003 s" in details_of(timeline, wait, ns(6)).facts
+
+
+def test_a_bar_after_the_moment_on_screen_is_told_to_come_later() -> None:
+    timeline = shared_group(12.9)
+    long = timeline.spans_on(1, Window(ns(5), ns(6)))[0]
+    wait = next(iter(timeline.moment(ns(6)).waiting.values()))
+    for bar, begins in ((long, "4.000 s"), (wait, "4.003 s")):
+        once_begun = details_of(timeline, bar, bar.end or timeline.end)
+        told = details_of(timeline, bar, ns(3))
+        assert told.title == once_begun.title
+        assert told.facts == (f"begins later, at {begins}", *once_begun.facts)
 
 
 def test_a_timer_tells_its_period_and_how_late_it_was() -> None:
