@@ -61,7 +61,7 @@ def _without(asks: str, expected: str, counts: Callable[[Finding], object]) -> C
     def judge(run: Timeline) -> Verdict:
         for found in problems(run):
             if counts(found):
-                return Verdict(False, expected, found.explained(run).what, found.at)
+                return Verdict(False, expected, found.explained(run).what, found.known_at)
         return Verdict(True, expected, "none")
 
     return Check(asks, judge)

@@ -15,6 +15,7 @@ from lessons.catalogue import find, lessons
 from lessons.checks import rotations
 from lessons.judge import Judge
 from lessons.lesson import Lesson, read_lesson
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.timeline import Timeline
 from tests.support.daily import first_daily
 from tests.support.engine_runs import run_lesson, run_to_end
@@ -93,7 +94,22 @@ def test_with_one_shared_group_the_robot_drives_on_with_one_thread_alone(
     run = Timeline()
     run.extend(run_lesson("shared-group", 40.0, threads=threads).events)
     assert (rotations(run)[-1].end < run.end) == drives_on
-    assert "With four threads the robot even **never drives on**." in find("shared-group").explanation
+    assert "With four threads the robot **never drives on**." in find("shared-group").explanation
+
+
+def test_what_got_stuck_is_shown_when_the_last_of_its_waits_begins() -> None:
+    lesson = find("call-in-a-callback")
+    nothing_stuck = Judge(lesson).verdicts(run_lesson(lesson.id, 5.0).timeline)[0].verdict
+    assert nothing_stuck.at is not None
+    assert 1.3 <= nothing_stuck.at / SECOND < 1.31, "the gripper replies 0.3 s after the call"
+
+
+def test_a_loaf_that_is_still_in_the_oven_is_not_counted_as_baked() -> None:
+    lesson = find("clock-set-back")
+    assert lesson.solution_path is not None
+    run = run_to_end(setup_to_judge(lesson, lesson.solution_path)).timeline
+    out, in_time = (each.verdict.seen.split()[0] for each in Judge(lesson).verdicts(run)[:2])
+    assert out == in_time
 
 
 def test_a_belt_that_moves_before_the_service_begins_has_not_moved_on_after_the_call() -> None:

@@ -36,14 +36,14 @@ def _bakings(run: Timeline) -> list[tuple[int, int]]:
 
 def _judge_baking(run: Timeline) -> Verdict:
     expected = "2.8 to 3.4 s from DOUGH IN to BREAD OUT"
-    bakings = _bakings(run)
-    if not _told(run, "BREAD OUT"):
+    out = _told(run, "BREAD OUT")
+    if not out:
         return Verdict(False, expected, "no bread")
-    for at, baked in bakings:
+    for at, baked in _bakings(run):
         is_last = at + baked == run.end
         if baked > 3.4 * SECOND or (baked < 2.8 * SECOND and not is_last):
             return Verdict(False, expected, seconds(baked), at)
-    return Verdict(True, expected, f"{len(bakings)} loaves in time")
+    return Verdict(True, expected, f"{len(out)} loaves in time")
 
 
 CHECKS = (
