@@ -114,8 +114,11 @@ class PaneLayout(ScreenPart):
         return action != "show_pane" or not parameters or parameters[0] in self.names
 
     def action_show_pane(self, name: str) -> None:
-        """Go to a pane."""
-        self.show(name)
+        """Go to a pane; that of a robot stays closed where there is none."""
+        if name == self.screen.query_one(Tabs).empty != self.current:
+            self.host.tell(f"There is no {name} in this run.")
+        else:
+            self.show(name)
 
     def action_next_pane(self) -> None:
         """Go to the next pane."""

@@ -196,14 +196,15 @@ async def test_without_a_robot_r_runs_again_and_the_code_has_the_room(tmp_path: 
         await pilot.press("4")
         await settle(pilot)
         shown.append((bool(robot.display), code.size.width))
-        assert [is_there for is_there, _ in shown] == [False, True]
-        assert shown[1][1] < shown[0][1]
+        assert not robot.display
+        assert shown[0] == shown[1]
+        assert [each.message for each in app._notifications] == ["There is no robot in this run."]
         await pilot.press("r")
         await settle(pilot)
         assert len(engines.sessions) == 2
 
 
-async def test_without_a_robot_there_is_no_tab_of_it_until_it_is_gone_to(tmp_path: Path) -> None:
+async def test_without_a_robot_there_is_no_tab_of_it(tmp_path: Path) -> None:
     file = tmp_path / "my_node.py"
     file.write_text("")
     engines = FakeEngines(dummy_server_run().events, ns(5.2))
@@ -216,7 +217,7 @@ async def test_without_a_robot_there_is_no_tab_of_it_until_it_is_gone_to(tmp_pat
         assert "3 Factory [5 Log]" in text_of(app)
         await pilot.press("4")
         await settle(pilot)
-        assert "[4 Robot] 5 Log" in text_of(app)
+        assert "3 Factory [5 Log]" in text_of(app)
 
 
 async def test_why_nobody_can_choose_the_thread_is_told(tmp_path: Path) -> None:
