@@ -91,7 +91,7 @@ class Predictions(ScreenPart):
         self.screen.run_worker(learning.update_page(), group="page")
         if not learning.progress.explained:
             key = self.host.key("explain")
-            self.host.tell(f"The guide now tells what happened, and why: press {key}.")
+            self.host.tell(f"You have seen enough: {key} explains what happened, and why.")
 
     def _was_watched(self) -> bool:
         """Whether enough of the run was watched to judge the predictions."""
