@@ -165,7 +165,7 @@ class Absences(ScreenPart):
             "type": "No program reads from the keyboard now.",
             "compare": "There is only one run so far: nothing to compare it with.",
         }
-        if self.is_available("solution"):
+        if self.lesson is not None and self.is_available("solution"):
             sentences["hint"] = f"No hint is left or needed; {key('solution')} shows the solution."
         if self.is_available("faster") or self.is_available("slower"):
             sentences |= {"slower": "It goes no slower.", "faster": "It goes no faster."}
