@@ -16,8 +16,9 @@ from sim.trace.events import EntityId, ThreadId
 
 
 def was_stepped(run: ShownRun, navigation: TimeNavigation) -> bool:
-    """Tell whether the moment on screen is the one to which a step led."""
-    return navigation.playhead.at is None and isinstance(run, LiveRun) and run.stepped
+    """Tell whether the moment on screen is one to which a step of a live run led."""
+    at = navigation.playhead.at
+    return isinstance(run, LiveRun) and (run.stepped if at is None else at in run.stops)
 
 
 @dataclass
@@ -67,7 +68,7 @@ class Narration(ScreenPart):
 
         Between two decisions the last one is told.
         """
-        was_live = was_stepped(self.runs.run, self.navigation)
+        was_live = self.navigation.playhead.at is None and was_stepped(self.runs.run, self.navigation)
         if not self.widget.display or not (was_live or self.navigation.playhead.at is not None):
             return None, None
         now, place = self.navigation.now, self.navigation.place

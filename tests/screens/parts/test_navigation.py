@@ -5,6 +5,7 @@ from collections.abc import Callable
 import pytest
 
 from cbtui.runs.live.live_run import LiveRun
+from cbtui.screens.parts.narration import was_stepped
 from cbtui.screens.parts.navigation import MomentKey, TimeNavigation
 from sim.engine.commands import Command, Pause, RunUntil, Step
 from sim.engine.setup import RunSetup
@@ -127,10 +128,13 @@ def test_looking_back_goes_through_the_moments_from_which_steps_began(engines: F
     reached = []
     for _ in range(3):
         navigation.action_step_back()
+        assert was_stepped(run, navigation)
         reached.append(navigation.now)
     assert reached == [ns(5.26), ns(5.25), run.stops[0]]
     navigation.action_step()
     assert navigation.now == ns(5.25)
+    navigation.seek(ns(5.1))
+    assert not was_stepped(run, navigation)
 
 
 def test_a_moment_to_come_is_run_to_and_one_that_has_passed_is_looked_at(engines: FakeEngines) -> None:
