@@ -102,13 +102,13 @@ def test_who_waits_for_locks_is_told_with_the_lines_and_nothing_else_is_their_fa
 
 
 def test_one_lock_that_is_waited_for_is_to_be_released_and_several_to_be_taken_in_one_order() -> None:
-    def told(*locks: str) -> Explanation:
+    def told(*locks: str, lines: int = 1) -> Explanation:
         timeline = Timeline()
         timeline.extend([*CAST, RunStarted(0, "t", "real", 0)])
         for thread, lock in enumerate(locks, 1):
             timeline.extend([ThreadAppeared(0, thread, f"T{thread}"), CallbackStarted(5, 1, thread, 0, 0, 0)])
             timeline.extend(
-                [msgspec.structs.replace(_at_a_lock(8 + thread, 1, thread, 59 + thread), lock=lock)]
+                [msgspec.structs.replace(_at_a_lock(8 + thread, 1, thread, 59 + thread * lines), lock=lock)]
             )
         timeline.extend([TimePassed(ns(3))])
         [found] = [each for each in diagnose(timeline) if each.rule.id == "waits-for-lock"]
@@ -120,6 +120,8 @@ def test_one_lock_that_is_waited_for_is_to_be_released_and_several_to_be_taken_i
     assert one.cure.startswith("take self.a by with everywhere, which releases it")
     assert two.what.endswith("and so does odom_callback (node.py:61) for self.b")
     assert two.cure.startswith("take locks in the same order everywhere")
+    alike = told("self.a", "self.a", "self.a", lines=0)
+    assert alike.what == "odom_callback (node.py:59) has waited for self.a for 3.0 s"
 
 
 def _in_a_loop(t: float, file: str = "node.py", line: int = 62) -> CallbackAt:

@@ -175,8 +175,8 @@ def _kept_out(found: Finding, timeline: Timeline) -> list[str]:
 class WaitsForLock(Rule):
     """On the real clock callbacks have waited long for locks, and wait still.
 
-    On real rclpy the holder of a lock is unknown, and whether it ever releases it; where it is known, other
-    rules apply. Callbacks that wait for these are part of the finding.
+    On real rclpy the holder of a lock may be unknown, and whether it ever releases it; where a callback is
+    known to hold it, other rules apply. Callbacks that wait for these are part of the finding.
     """
 
     id = "waits-for-lock"
@@ -193,7 +193,7 @@ class WaitsForLock(Rule):
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         waiting = _at_locks(timeline)
-        first, *others = (
+        first, *others = dict.fromkeys(
             f"{who(each.entity, timeline)} ({Path(each.file).name}:{each.line})"
             f"{'' if each.lock in ('', waiting[0].lock) else f' for {each.lock}'}"
             for each in waiting
@@ -224,7 +224,7 @@ def _at_locks(timeline: Timeline) -> list[Position]:
     waiting = (
         each
         for each in last
-        if each.end is None and each.waits_for_lock and not (each.holder or time_limit(each))
+        if each.end is None and each.waits_for_lock and not (each.holder or each.keeper or time_limit(each))
     )
     untold = (each for each in waiting if each.entity not in told)
     return sorted(untold, key=lambda each: each.start)
