@@ -28,7 +28,7 @@ _PATIENCE = 1_500_000_000
 class HungCallbacks:
     """Follows where callbacks are, and tells once of each wait without a timeout that lasts.
 
-    Waits for locks are left to the rules on them.
+    A wait for a lock is told if its holder is known: ``WaitsForLock`` covers the others.
     """
 
     def __init__(self) -> None:
@@ -56,10 +56,20 @@ class HungCallbacks:
     def look(self, t: Nanoseconds) -> Iterator[Notice]:
         """Yield the notices that are due."""
         for thread, at in () if self._is_over else self._at.items():
-            waits = at.doing is Doing.WAITS and at.call != LOCK and not at.until
-            if waits and t - at.t >= _PATIENCE and thread not in self._told:
+            waits = at.doing is Doing.WAITS and not at.until and t - at.t >= _PATIENCE
+            if waits and thread not in self._told and not self._comes(at):
                 self._told.add(thread)
                 yield _notice(at, t)
+
+    def _comes(self, at: CallbackAt) -> bool:
+        """Whether a lock may come: nobody knows who holds it, or the last holder in a row just sleeps."""
+        if at.call == LOCK and not (at.holder or at.keeper or at.taken_by):
+            return True
+        seen: set[ThreadId] = set()
+        while at.holder in self._at and at.holder not in seen:
+            seen.add(at.holder)
+            at = self._at[at.holder]
+        return at.doing is Doing.SLEEPS and not at.loop[0]
 
 
 def _where(at: CallbackAt) -> tuple[object, ...]:
@@ -69,8 +79,9 @@ def _where(at: CallbackAt) -> tuple[object, ...]:
 def _notice(at: CallbackAt, t: Nanoseconds) -> Notice:
     problem = f"has not come back since {timestamp(at.t)}"
     file, function, line = at.frames[-1]
-    what = f"it waits in {at.call}(); its thread serves nothing else meanwhile"
-    text = f"{at.frames[0][1]} {problem} ({place_text(file, function, line)}): {what}"
+    what = f"waits for {at.lock or 'a lock'}" if at.call == LOCK else f"waits in {at.call}()"
+    where = f"{at.frames[0][1]} {problem} ({place_text(file, function, line)})"
+    text = f"{where}: it {what}; its thread serves nothing else meanwhile"
     return Notice(
         t,
         Severity.WARN,

@@ -22,14 +22,15 @@ _FUNCTIONS = {
 
 
 def position_of(seen: At, t: int) -> CallbackAt | ProgramAt:
-    """The event of the trace; who holds a lock is not known."""
+    """The event of the trace."""
     doing, call = _called(seen) if seen.module else _built_in(seen)
     loops = (loop_around(file, line) for file, _, line in reversed(seen.frames))
     position = doing, call, seen.frames, next(filter(None, loops), ("", 0))
     until = t + seen.until - seen.t if seen.until and doing is not Doing.SLEEPS else 0
     if seen.entity:
         lock = _lock(seen) if call == LOCK else ""
-        return CallbackAt(t, seen.entity, seen.thread, *position, until=until, lock=lock)
+        taken = seen.keeper, lock, seen.taken_at, seen.taken_by
+        return CallbackAt(t, seen.entity, seen.thread, *position, seen.holder, until, *taken)
     return ProgramAt(t, *position, until)
 
 
@@ -41,7 +42,10 @@ def _called(seen: At) -> tuple[Doing, str]:
         if is_pause:  # simulated time comes as messages, which somebody has to take in
             return (Doing.WAITS if seen.is_simulated else Doing.SLEEPS), function
         return Doing.CALLS_ROS, function
-    return (Doing.WAITS, function) if module.startswith(_WAITING) else _COMPUTES
+    if not module.startswith(_WAITING):
+        return _COMPUTES
+    is_entered = function.rpartition(".")[2] == "__enter__"  # a condition's
+    return Doing.WAITS, LOCK if is_entered else function
 
 
 def _built_in(seen: At) -> tuple[Doing, str]:

@@ -103,6 +103,14 @@ class At(msgspec.Struct, frozen=True, array_like=True, tag="at"):
     """When the timeout that this function was given is over; 0 for none."""
     is_simulated: bool = False
     """Whether it is a function of a clock that goes by simulated time."""
+    holder: int = 0
+    """The thread whose callback holds the lock for which it waits; 0: none is known to."""
+    keeper: int = 0
+    """The entity whose suspended callback does."""
+    taken_at: tuple[str, int] = ("", 0)
+    """Where that lock was taken."""
+    taken_by: str = ""
+    """The name of the thread that holds it, if it runs no callback."""
 
 
 class Replied(msgspec.Struct, frozen=True, array_like=True, tag="replied"):

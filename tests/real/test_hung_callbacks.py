@@ -60,6 +60,20 @@ def test_what_ends_by_itself_or_has_gone_on_is_not_told(
     assert not looked_at(*events)
 
 
+def test_a_wait_for_a_lock_is_told_if_its_holder_does_not_just_sleep() -> None:
+    wait = changed(call="Lock.acquire", lock="self.lock", holder=8)
+    keeper = changed(thread=8, entity=6, call="Event.wait", until=9 * SECOND)
+    [told] = looked_at(wait, keeper)
+    assert "(node.py:12, in tick): it waits for self.lock; " in told
+    asleep = msgspec.structs.replace(keeper, doing=Doing.SLEEPS, call="time.sleep")
+    assert not looked_at(wait, asleep)
+    assert looked_at(wait, msgspec.structs.replace(asleep, loop=("/home/node.py", 12)))
+
+
+def test_a_lock_that_a_callback_keeps_while_it_awaits_is_told() -> None:
+    assert looked_at(changed(call="Lock.acquire", keeper=6))
+
+
 CONDITION = """
 import threading
 

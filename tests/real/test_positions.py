@@ -95,10 +95,11 @@ class Tried(Node):
         self.take(*reversed(self.locks))
 
     def take(self, first, second):
-        with first:
-            time.sleep(0.2)
-            with second:
-                pass
+        first.acquire()
+        time.sleep(0.2)
+        second.acquire()
+        second.release()
+        first.release()
 """
 
 

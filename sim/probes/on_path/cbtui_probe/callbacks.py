@@ -7,6 +7,7 @@ import inspect
 import sys
 import time
 import weakref
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from .own_lines import awaiting_frames
@@ -174,11 +175,15 @@ class Calls:
 
     def suspend(self, outer: int, coroutine: Any) -> None:
         """Record where the callback is suspended; ``outer`` runs on the calling thread again."""
+        with suppress(TypeError):  # it may be none of Python's own
+            self._recorder.suspended[coroutine] = self._entity.number
         frames = awaiting_frames(coroutine, is_own)
         self._leave(self._recorder.here, outer, "callback_suspend", frames)
 
-    def resume(self) -> int:
+    def resume(self, coroutine: Any) -> int:
         """Record that the callback is resumed; returns the entity that ran on the thread before."""
+        with suppress(TypeError):
+            self._recorder.suspended.pop(coroutine, None)
         here = self._recorder.here
         outer = self._enter(here)
         self._recorder.put("callback_resume", now(), self._entity.number, here.thread)
@@ -237,7 +242,7 @@ class _Steps:
             while True:
                 if suspended and not _is_polled(coroutine):
                     suspended = False
-                    self.outer = self._calls.resume()
+                    self.outer = self._calls.resume(coroutine)
                 try:
                     wanted = coroutine.send(None)
                 except StopIteration as stop:

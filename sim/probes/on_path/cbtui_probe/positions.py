@@ -8,12 +8,14 @@ import threading
 from typing import TYPE_CHECKING, Any
 
 from .callbacks import is_own
+from .locks import HeldLocks, place_of, wanted_lock
 from .recorder import now
 
 if TYPE_CHECKING:
     from types import CodeType, FrameType
 
     from .executors import Executors
+    from .locks import Holder
     from .recorder import Recorder
 
 _LIBRARIES = (
@@ -24,13 +26,27 @@ _LIBRARIES = (
 _CALLBACKS = "cbtui_probe.callbacks"
 _DEEPEST = 20
 """The most lines of one stack that are reported, the innermost ones."""
-_UNKNOWN = (0, 0, 0, 0)
 _TIMEOUTS = ("timeout_sec", "timeout", "time_to_wait")
 """The arguments that limit a wait, in seconds; negative numbers, infinity and None do not."""
 _LONGEST = 1_000_000_000
 """Seconds of the longest timeout that is reported."""
 _EVERY = 250_000_000
 """Nanoseconds between two looks at the program's main thread."""
+_HOLDERS_EVERY = 50_000_000
+"""Nanoseconds between two looks for the holders of locks."""
+_Named = tuple[int, int, tuple[str, int], str]
+_NOBODY: _Named = (0, 0, ("", 0), "")
+
+
+class _Sample:
+    """Where a callback is on a thread."""
+
+    def __init__(self, entity: int, stack: list[FrameType]) -> None:
+        self.entity = entity
+        self.instructions = _instructions(stack)
+        self.position = _position(stack)
+        self.holder = _NOBODY
+        """Who holds the lock for which it waits."""
 
 
 class PositionSampler:
@@ -43,10 +59,11 @@ class PositionSampler:
     def __init__(self, recorder: Recorder, executors: Executors) -> None:
         self._recorder = recorder
         self._executors = executors
-        self._latest: dict[int, tuple[Any, ...]] = {}
+        self._latest: dict[int, _Sample] = {}
         self._main = threading.main_thread().ident
         self._main_due = 0
         self._main_lines: list[Any] = []
+        self._holders_due = 0
 
     def look(self) -> None:
         """Sample once."""
@@ -71,14 +88,55 @@ class PositionSampler:
     def _look_at_callbacks(self) -> None:
         running = [each for spinner in self._executors.all() for each in spinner.busy.copy().items()]
         tops = sys._current_frames() if running else {}
+        stand: list[tuple[int, list[FrameType]]] = []
         for thread, entity in running:
             stack = _stack(tops.get(self._recorder.idents[thread]), until=_CALLBACKS)
-            instructions = entity, [(frame.f_code, frame.f_lasti) for frame in stack]
-            if self._latest.get(thread) != instructions:
-                self._latest[thread] = instructions
-                position = _position(stack)
-                if position is not None:
-                    self._recorder.put("at", now(), entity, thread, *position)
+            latest = self._latest.get(thread)
+            if latest is not None and (latest.entity, latest.instructions) == (entity, _instructions(stack)):
+                stand.append((thread, stack))
+                continue
+            latest = self._latest[thread] = _Sample(entity, stack)
+            if latest.position is not None:
+                self._recorder.put("at", now(), entity, thread, *latest.position)
+        if now() >= self._holders_due:
+            self._holders_due = now() + _HOLDERS_EVERY
+            self._look_for_holders(stand, tops, dict(running))
+
+    def _look_for_holders(
+        self, stand: list[tuple[int, list[FrameType]]], tops: dict[int, FrameType], running: dict[int, int]
+    ) -> None:
+        """Report who holds the locks for which threads ``stand`` where they stood before."""
+        idents, held = self._recorder.idents, None
+        threads = {idents[each]: each for each in running}
+        for thread, stack in stand:
+            latest, found = self._latest[thread], None
+            own = next(filter(_is_written, stack), None)
+            lock = None if own is None else wanted_lock(own)
+            if lock is not None:
+                held = held or HeldLocks(tops, self._suspended(), _is_written)
+                if _instructions(stack) == latest.instructions:  # it has not gone on meanwhile
+                    found = held.holder_of(lock, idents[thread])
+            holder = _NOBODY if found is None else _named(found, threads)
+            if latest.position is not None and latest.holder != holder:
+                latest.holder = holder
+                self._recorder.put("at", now(), latest.entity, thread, *latest.position, *holder)
+
+    def _suspended(self) -> dict[Any, int]:
+        known = self._recorder.suspended
+        coroutines = (each() for each in known.keyrefs())  # others may come meanwhile
+        return {each: known.get(each, 0) for each in coroutines if each is not None}
+
+
+def _named(holder: Holder, threads: dict[int, int]) -> _Named:
+    """The ids of the thread and the entity that hold a lock, where it was taken, and the thread's name."""
+    thread, name = threads.get(holder.ident, 0), ""
+    if not (thread or holder.entity):
+        name = next((each.name for each in threading.enumerate() if each.ident == holder.ident), "")
+    return thread, holder.entity, holder.taken_at, name
+
+
+def _instructions(stack: list[FrameType]) -> list[tuple[CodeType, int]]:
+    return [(frame.f_code, frame.f_lasti) for frame in stack]
 
 
 def _stack(top: FrameType | None, until: str) -> list[FrameType]:
@@ -96,24 +154,21 @@ def _position(stack: list[FrameType]) -> tuple[Any, ...] | None:
     That is followed by when the function's timeout is over, 0 for none, and whether it sleeps by simulated
     time.
     """
-    own = [
-        place
-        for place, frame in enumerate(stack)
-        if is_own(frame) and not frame.f_code.co_filename.startswith(_LIBRARIES)
-    ]
+    own = [place for place, frame in enumerate(stack) if _is_written(frame)]
     if not own:
         return None
+    place = place_of(stack[own[0]].f_code, stack[own[0]].f_lasti)
     lines = [
         (frame.f_code.co_filename, frame.f_code.co_name, frame.f_lineno)
         for frame in (stack[place] for place in reversed(own[:_DEEPEST]))
     ]
     if own[0] == 0:
-        return lines, _place(stack[0].f_code, stack[0].f_lasti), "", "", 0, False
+        return lines, place, "", "", 0, False
     inside = reversed(stack[: own[0]])
     called = next((frame for frame in inside if not _module(frame).startswith("cbtui_probe")), stack[0])
     name = getattr(called.f_code, "co_qualname", called.f_code.co_name)
     is_simulated = getattr(called.f_locals.get("self"), "ros_time_is_active", False) is True
-    return lines, _UNKNOWN, _module(called), name, _until(called), is_simulated
+    return lines, place, _module(called), name, _until(called), is_simulated
 
 
 def _until(function: FrameType) -> int:
@@ -124,13 +179,10 @@ def _until(function: FrameType) -> int:
     return 0
 
 
+def _is_written(frame: FrameType) -> bool:
+    """Whether a frame runs the program's own code, not that of an installed package."""
+    return is_own(frame) and not frame.f_code.co_filename.startswith(_LIBRARIES)
+
+
 def _module(frame: FrameType) -> str:
     return str(frame.f_globals.get("__name__"))
-
-
-def _place(code: CodeType, instruction: int) -> tuple[int, ...]:
-    """First and last line, first and last column in bytes, of an instruction; zeros before Python 3.11."""
-    places = getattr(code, "co_positions", None)
-    if places is None:
-        return _UNKNOWN
-    return tuple(number or 0 for number in list(places())[instruction // 2])

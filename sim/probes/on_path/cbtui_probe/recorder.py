@@ -8,6 +8,7 @@ import time
 from collections import deque
 from itertools import count
 from typing import Any
+from weakref import WeakKeyDictionary
 
 _BOUND = 200_000
 """The most events in the buffer; the oldest are dropped, and counted."""
@@ -51,6 +52,8 @@ class Recorder:
         self.lost = 0
         self.idents: dict[int, int] = {}
         """Python's identifiers of the threads that have appeared, by their ids."""
+        self.suspended: Any = WeakKeyDictionary()
+        """The entities whose callbacks are suspended, or were when they ended, by their coroutines."""
         self._events: deque[tuple[Any, ...]] = deque(maxlen=_BOUND)
         self._ids = count((os.getpid() << _ROOM) + 1)
 
