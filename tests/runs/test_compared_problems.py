@@ -100,8 +100,8 @@ def test_a_wait_without_end_that_is_no_deadlock_is_a_hang() -> None:
 
 def test_other_problems_are_gone_or_new_too() -> None:
     starved, deaf = run_of("held_group"), run_of("qos_mismatch")
-    assert told(starved, starved) == "Still in run B: long wait for a group."
-    assert told(starved, deaf) == "Gone in run B: long wait for a group. New in run B: QoS mismatch."
+    assert told(starved, starved) == "Still in run B: wait for a group."
+    assert told(starved, deaf) == "Gone in run B: wait for a group. New in run B: QoS mismatch."
     assert told(run_of("call_in_timer"), deaf) == "The deadlock is gone. New in run B: QoS mismatch."
 
 
@@ -172,7 +172,7 @@ def test_what_was_an_effect_of_another_problem_before_is_not_new(tmp_path: Path)
     for group in ("None", "MutuallyExclusiveCallbackGroup()"):
         (tmp_path / "camera.py").write_text(CAMERA.replace("GROUP", group))
         runs.append(run_to_end(program_setup(tmp_path / "camera.py", 8.0)).timeline)
-    assert told(*runs) == "Gone in run B: long wait for a group. Still in run B: dropped messages."
+    assert told(*runs) == "Gone in run B: wait for a group. Still in run B: dropped messages."
 
 
 def test_nothing_is_said_of_a_run_that_has_not_come_to_the_problem() -> None:
@@ -195,7 +195,7 @@ def test_of_programs_that_share_little_neither_is_better_and_each_has_its_own_pr
     starved, stuck = run_of("held_group"), run_of("call_in_timer")
     compared = compare(starved, stuck, Window(0, starved.end))
     told = headline(compared, ComparedProblems(starved, stuck).compared(compared))
-    found = "Found in run A: long wait for a group. Found in run B: deadlock. "
+    found = "Found in run A: wait for a group. Found in run B: deadlock. "
     shared = "The runs share none of 5 callbacks: too little in common for one to be better."
     assert told == found + shared
     assert not is_tie(compared)

@@ -361,7 +361,7 @@ async def test_of_runs_that_share_no_callback_none_is_called_better_nor_a_first_
     other = ComparedSide("other", timeline_of(dummy_server_run().events, 9.4))
     async with compared(sides()[0], other) as (app, _):
         told = "The runs share only timer_callback of 4 callbacks: too little in common for one to be better"
-        assert verdict_of(app) == f"Found in run A: long wait for a group. {told}"
+        assert verdict_of(app) == f"Found in run A: wait for a group. {told}"
 
 
 @pytest.mark.parametrize("size", [NARROW, (80, 28)])

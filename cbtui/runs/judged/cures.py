@@ -67,7 +67,7 @@ _NAMES = {
     "spin-raised": "exception that ends spin()",
     "overrun-timer": "callback longer than its timer's period",
     "falls-behind": "callback slower than its messages",
-    "group-starvation": "long wait for a group",
+    "group-starvation": "wait for a group",
     "no-free-worker": "no free thread",
     "behind-others": "wait behind others",
     "always-due": "timer of period 0",
