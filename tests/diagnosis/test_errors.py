@@ -287,6 +287,12 @@ def test_what_asyncio_misses_in_a_callback_is_told_with_what_to_await_instead(th
             "destroy it only when nothing uses it any more, or make it again before this line",
         ),
         (
+            "RCLError: Failed to create subscription: invalid allocator, at /src/rcl/subscription.c:261",
+            "within one process a topic or service has one type: most likely something else of the program "
+            "uses the name of this subscription with another type",
+            "give all ends of that name the same type, or this subscription another name",
+        ),
+        (
             "RuntimeError: dictionary changed size during iteration",
             "the dictionary was changed while this line went through it, by this loop or by another thread",
             "go through a copy, such as list(...) of it; and where another thread changes it, hold one lock "

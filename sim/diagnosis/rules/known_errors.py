@@ -151,6 +151,12 @@ _KNOWN = tuple(
             r"destroy it only when nothing uses it any more, or make it again before this line",
         ),
         (
+            r"RCLError: [Ff]ailed to create (\w+): (?:invalid allocator|.* with incompatible type).*",
+            r"within one process a topic or service has one type: most likely something else of the program "
+            r"uses the name of this \1 with another type",
+            r"give all ends of that name the same type, or this \1 another name",
+        ),
+        (
             r"EOFError: EOF when reading a line",
             r"nobody types into this run, so input() found the end of what there is to read",
             r"run it where somebody can type; in a callback, which keeps its thread so long, read in another "
