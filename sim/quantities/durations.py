@@ -12,13 +12,13 @@ _FORMS = (
 """For each: the durations below this limit (ns), the unit (ns), its decimals and its name."""
 
 
-_LEAST = 500
+LEAST = 500
 """The shortest duration (ns) that is more than none when it is rounded."""
 
 
 def duration(length: int) -> str:
     """Return a duration (nanoseconds) in few characters: ``12 µs``, ``0.8 ms``, ``9.9 s``, ``12 min``."""
-    if abs(length) < _LEAST:
+    if abs(length) < LEAST:
         return "0 s"
     for limit, unit, decimals, name in _FORMS:
         if length < limit:

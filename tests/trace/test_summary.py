@@ -125,6 +125,14 @@ def test_where_nobody_waited_the_summary_says_so() -> None:
     assert "longest waits: none, every callback ran as soon as it was ready\n" in plain_text(summary_of(run))
 
 
+def test_a_wait_that_would_be_told_as_none_is_none() -> None:
+    run, thread, timer, odom = small_run()
+    run.callback(timer, thread, 1.0, 0.5)
+    run.wait(odom, 1.0, 1.000_000_400, Reason.NO_FREE_WORKER)
+    run.robot(3.0)
+    assert "longest waits: none" in plain_text(summary_of(run))
+
+
 def test_a_callback_that_was_late_without_a_known_wait_did_not_run_as_soon_as_it_was_ready() -> None:
     run, thread, timer, _ = small_run()
     run.callback(timer, thread, 1.3, 0.5, late=0.3)

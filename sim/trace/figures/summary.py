@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import groupby, pairwise
 
+from sim.quantities.durations import LEAST
 from sim.trace.descriptions import node_name, silent_topics, why_waiting
 from sim.trace.events import EntityId, NoticeKind, RobotMoved, VelocityCommanded
 from sim.trace.figures.concurrency import threads_at_once
@@ -176,7 +177,7 @@ def _longest(waits: Iterable[Wait], timeline: Timeline) -> WaitInRun | None:
 
 
 def waits_in_run(waits: Iterable[Wait], timeline: Timeline) -> Iterator[WaitInRun]:
-    """Yield those waits that took any time, each with all its reasons: a series has one ``since``."""
+    """Yield those waits that are more than none, each with all its reasons: a series has one ``since``."""
     for _, each in groupby(waits, key=lambda wait: wait.since):
         series = list(each)
         ends = [wait.end_at(timeline.end) for wait in series]
@@ -184,7 +185,7 @@ def waits_in_run(waits: Iterable[Wait], timeline: Timeline) -> Iterator[WaitInRu
         shares: defaultdict[str, int] = defaultdict(int)
         for wait, end in zip(series, ends, strict=True):
             shares[why_waiting(wait, timeline)] += end - max(wait.start, max(ends) - length)
-        if length:
+        if length >= LEAST:
             yield WaitInRun(length, max(shares, key=shares.__getitem__))
 
 
