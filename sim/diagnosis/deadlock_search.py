@@ -1,6 +1,6 @@
-"""Searches a run for deadlocks: at which moments the wait-for graph is asked."""
+"""Searches a run for deadlocks: at which moments the wait-for graph is asked, and what calls itself."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 from sim.diagnosis.lasting_waits import SETTLES, lasting_awaits, stands
 from sim.diagnosis.timeline_view import TimelineView
@@ -8,6 +8,7 @@ from sim.diagnosis.wait_for_graph import WaitForGraph
 from sim.diagnosis.waiters import StuckCallback
 from sim.trace.events import EntityId, EntityKind, Reason
 from sim.trace.model import Blocked, Nanoseconds
+from sim.trace.timeline import Timeline
 
 
 def deadlocks(
@@ -57,3 +58,14 @@ def _awaits(view: TimelineView) -> bool:
     suspended = view.timeline.ever_suspended
     holders = (entity for holding in view.now.holders.values() for entity in holding)
     return any(any(lasting_awaits(each, view.end, view.timeline)) for each in holders if each in suspended)
+
+
+def recursive_service(stuck: Collection[EntityId], until: Nanoseconds, timeline: Timeline) -> EntityId:
+    """Return the one of some stuck callbacks that is a service's and waits in a call of it; 0 for none."""
+    services = {
+        each.id: each.name
+        for each in map(timeline.entities.__getitem__, stuck)
+        if each.kind is EntityKind.SERVICE
+    }
+    waits = timeline.moment(until - 1).blocked.values()
+    return next((each.entity for each in waits if services.get(each.entity) == each.service), 0)

@@ -81,6 +81,34 @@ def test_as_many_calls_as_threads_need_one_thread_more(count: int, kind: Group) 
     assert f"num_threads={count + 1}" in told.cure
 
 
+@pytest.mark.parametrize(
+    ("kind", "rule"),
+    [
+        (shared(ReentrantCallbackGroup), "needs-one-more-worker"),
+        (shared(MutuallyExclusiveCallbackGroup), "self-made-deadlock"),
+    ],
+)
+def test_of_a_service_that_calls_itself_no_number_of_threads_and_no_group_is_offered(
+    kind: Group, rule: str
+) -> None:
+    def program(simulation: Simulation) -> None:
+        node, group = Node("n"), kind()
+        client = node.create_client(SetBool, "again", callback_group=group)
+
+        def serve(_: object, response: object) -> object:
+            client.call(SetBool.Request())
+            return response
+
+        node.create_service(SetBool, "again", serve, callback_group=group)
+        once(node, 1.0, lambda: client.call_async(SetBool.Request()), ReentrantCallbackGroup())
+        spin(node, 3)
+
+    told = diagnosed(program).explained(rule)
+    assert told.why.startswith("serve calls its own service")
+    assert told.cure == "let serve call itself as a function; no number of threads is enough for every depth"
+    assert not told.remedies
+
+
 def test_a_goal_awaited_in_the_group_of_its_client_is_a_deadlock_even_if_its_reply_is_seen_late() -> None:
     run, client = Run(), 9
     run.executor("MultiThreadedExecutor", 4)

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from sim.diagnosis.cures import Remedy
-from sim.diagnosis.deadlock_search import deadlocks
+from sim.diagnosis.deadlock_search import deadlocks, recursive_service
 from sim.diagnosis.edits.locks import (
     keeps_lock,
     let_go_during_wait,
@@ -323,6 +323,10 @@ def _lines_of(entities: Sequence[EntityId], found: Finding, timeline: Timeline) 
 def _explanation(
     found: Finding, why: str, cure: str, remedies: tuple[Remedy, ...], timeline: Timeline
 ) -> Explanation:
+    if entity := recursive_service(found.stuck, found.until, timeline):
+        name, remedies = who(entity, timeline), ()
+        why = f"{name} calls its own service, and each such call keeps a thread until the next one is over"
+        cure = f"let {name} call itself as a function; no number of threads is enough for every depth"
     subject, wanted, lasts = who(found.subject, timeline), found.ring[1], found.until >= timeline.end
     until = until_when(found.ends, timeline)
     if found.about in _TELL_WHO_WAITS:
