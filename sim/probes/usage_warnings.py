@@ -75,8 +75,9 @@ class UsageWarnings:
         if (isgeneratorfunction(callback) or isasyncgenfunction(callback)) and place[1]:
             name = getattr(callback, "__name__", "the callback")
             problem = f"{name} has a yield in it, so calling it only makes a generator: nothing of it runs"
-            advice = f"write {name} without yield"
-            self._tell_of(place, NoticeKind.NEVER_ITERATED, problem, advice, entity=entity)
+            advice, code = f"write {name} without yield", getattr(callback, "__code__", None)
+            defined = (code.co_filename, code.co_firstlineno) if code else place
+            self._tell_of(defined, NoticeKind.NEVER_ITERATED, problem, advice, entity=entity)
         for name in self._shared.of(callback, place):
             code = getattr(callback, "__code__")  # noqa: B009 - it is a function
             given = ", ".join((*code.co_varnames[: code.co_argcount], f"{name}={name}"))

@@ -95,7 +95,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "lambda message: self.ask(message.data)",
             "hand over an async def, or a functools.partial of ask",
         ),
-        ("yield_in_timer", "slip", "self.create_timer(", "write go without yield"),
+        ("yield_in_timer", "slip", "def go(self):", "write go without yield"),
         (
             "never_awaited",
             "slip",

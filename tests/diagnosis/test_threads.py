@@ -1,7 +1,10 @@
 """Threads and groups that make no difference are remarked on, and never a problem."""
 
+from pathlib import Path
+
 import pytest
 
+from sim.diagnosis import diagnose
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import (
     CallbackGroup,
@@ -10,6 +13,7 @@ from sim.ros.scheduling.callback_groups import (
 )
 from sim.ros.scheduling.executors import MultiThreadedExecutor
 from tests.diagnosis.findings import Diagnosed, SetBool, diagnosed, executor_of, spin
+from tests.support.engine_runs import run_program
 from tests.support.simulation import Simulation
 
 
@@ -89,6 +93,18 @@ def test_threads_change_nothing_where_all_callbacks_share_a_group() -> None:
     assert rules(run) == ["groups-change-nothing"]
     told = run.explained("groups-change-nothing").what
     assert told == "4 threads change nothing: all callbacks share group A"
+
+
+def test_the_shared_group_is_told_with_the_line_that_puts_the_first_callback_into_it(tmp_path: Path) -> None:
+    source = (
+        "import rclpy\nfrom rclpy.executors import MultiThreadedExecutor\nrclpy.init()\n"
+        "def tick():\n    pass\n"
+        "node = rclpy.create_node('n')\nnode.create_timer(0.5, tick)\nnode.create_timer(0.5, tick)\n"
+        "executor = MultiThreadedExecutor(4)\nexecutor.add_node(node)\nexecutor.spin()\n"
+    )
+    timeline = run_program(tmp_path, source, seconds=2).timeline
+    (found,) = (each for each in diagnose(timeline) if each.rule.id == "groups-change-nothing")
+    assert str(found.explained(timeline).place) == "node.py:7"
 
 
 def test_threads_change_something_where_calls_may_have_done_callbacks_which_are_in_no_group() -> None:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from itertools import islice
 
-from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, is_models, place_of
+from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, is_models, made_at, place_of
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import listed, thread_count
 from sim.quantities.nanoseconds import SECOND
@@ -84,7 +84,7 @@ class GroupsChangeNothing(Rule):
                 f"{thread_count(timeline)} threads change nothing: all callbacks share group {letter}",
                 "a mutually exclusive group lets one callback in at a time, however many threads there are",
                 "give callbacks that should run at the same time groups of their own",
-                place_of(found.subject, timeline),
+                made_at(subject) or place_of(found.subject, timeline),
             )
         of_node = (each for each in _groups(timeline) if each.node == subject.node)
         own = (each for each in of_node if _callbacks(timeline, each))
