@@ -468,6 +468,33 @@ def test_a_parameter_callback_that_returns_nothing_is_told_once(tmp_path: Path, 
     assert told.place is not None
 
 
+REFUSED = """
+from rclpy.parameter import Parameter
+
+
+class Tried(Node):
+    def __init__(self):
+        super().__init__("tried")
+        self.declare_parameter("speed", 1)
+        self.create_timer(0.2, self.tick)
+
+    def tick(self):
+        looked_at = self.set_parameters([Parameter("speed", value=1.5)])
+        self.set_parameters([Parameter("speed", value=2)])
+        self.set_parameters([Parameter("speed", value=2.5)])  # dropped
+"""
+
+
+@pytest.mark.parametrize("ground", ["model", "ros2"])
+def test_a_refused_parameter_is_told_where_its_answer_is_dropped(tmp_path: Path, ground: str) -> None:
+    run = programs.run(tmp_path, REFUSED, ground=ground, seconds=1.5)
+    (found,) = (each for each in diagnose(run.timeline) if each.rule.id == "answer-overlooked")
+    told = found.explained(run.timeline)
+    assert "tick does not look at what set_parameters() returns: speed was refused: Wrong" in told.what
+    assert told.place is not None
+    assert "# dropped" in Path(told.place.file).read_text().splitlines()[told.place.first_line - 1]
+
+
 def test_the_robot_leaves_a_real_run_whose_program_publishes_for_its_sensors() -> None:
     told: list[object] = []
     with DefaultSelector() as selector:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dis
 import sys
 import threading
 from functools import wraps
@@ -18,10 +19,15 @@ if TYPE_CHECKING:
     from .recorder import Recorder
 
 _ADVICE = "return the value from a pre-set callback, or refuse what was asked for"
+_LOOK = "look at the results that set_parameters() returns"
+_SETTERS = ("set_parameters", "set_parameters_atomically")
 
 
 def watch_parameters(node_class: Any, recorder: Recorder) -> None:
-    """Report once each parameter that an on-set callback overrules, and that one gives no answer."""
+    """Report once each parameter that an on-set callback overrules, that one gives no answer, and refusals.
+
+    A refusal is reported where the program makes nothing of the answer that says so.
+    """
     set_all = node_class._set_parameters_atomically_common
     here = threading.local()
     told: set[tuple[int, str]] = set()
@@ -48,9 +54,29 @@ def watch_parameters(node_class: Any, recorder: Recorder) -> None:
             problem, advice, place = _unanswered(node._on_set_parameters_callbacks)
             text, entity = f"{problem}; {advice}", recorder.here.entity
             recorder.put("notice", now(), "WARN", text, entity, False, "unanswered", problem, advice, place)
+        elif not result.successful and (line := _makes_nothing_of_it(sys._getframe(1)))[1]:
+            if (key := (line[1], line[0])) not in told:
+                told.add(key)
+                names, reason = [each.name for each in parameters], result.reason and f": {result.reason}"
+                problem = f"{', '.join(names)} {'was' if len(names) == 1 else 'were'} refused{reason}"
+                text = f"{problem} ({Path(line[0]).name}:{line[1]}); {_LOOK}"
+                kind, entity = "refusal overlooked", recorder.here.entity
+                recorder.put("notice", now(), "WARN", text, entity, False, kind, problem, _LOOK, line)
         return result
 
     node_class._set_parameters_atomically_common = set_known
+
+
+def _makes_nothing_of_it(frame: FrameType | None) -> tuple[str, int]:
+    """The program's own line that sets parameters and drops the answer; "" and 0 if it does not."""
+    called = ""
+    while frame is not None and not is_own(frame):
+        called, frame = frame.f_code.co_name, frame.f_back
+    if frame is not None and called in _SETTERS:
+        code = dis.get_instructions(frame.f_code)
+        if next((each.opname for each in code if each.offset > frame.f_lasti), "") == "POP_TOP":
+            return frame.f_code.co_filename, frame.f_lineno
+    return "", 0
 
 
 def _overruled(name: str, frame: FrameType | None) -> str:
