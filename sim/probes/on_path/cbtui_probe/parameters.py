@@ -49,19 +49,22 @@ def watch_parameters(node_class: Any, recorder: Recorder) -> None:
                 result = set_all(node, parameters, *args, **kwargs)
         finally:
             here.parameters = outer
-        if result.reason == "Callback returned an invalid type" and (key := (id(node), "")) not in told:
+        has_answer = result.reason != "Callback returned an invalid type"
+        if not has_answer and (key := (id(node), "")) not in told:
             told.add(key)
             problem, advice, place = _unanswered(node._on_set_parameters_callbacks)
             text, entity = f"{problem}; {advice}", recorder.here.entity
             recorder.put("notice", now(), "WARN", text, entity, False, "unanswered", problem, advice, place)
-        elif not result.successful and (line := _makes_nothing_of_it(sys._getframe(1)))[1]:
-            if (key := (line[1], line[0])) not in told:
-                told.add(key)
-                names, reason = [each.name for each in parameters], result.reason and f": {result.reason}"
-                problem = f"{', '.join(names)} {'was' if len(names) == 1 else 'were'} refused{reason}"
-                text = f"{problem} ({Path(line[0]).name}:{line[1]}); {_LOOK}"
-                kind, entity = "refusal overlooked", recorder.here.entity
-                recorder.put("notice", now(), "WARN", text, entity, False, kind, problem, _LOOK, line)
+        file, line = ("", 0)
+        if has_answer and not result.successful:
+            file, line = _makes_nothing_of_it(sys._getframe(1))
+        if line and (key := (line, file)) not in told:
+            told.add(key)
+            names, reason = [each.name for each in parameters], result.reason and f": {result.reason}"
+            problem = f"{', '.join(names)} {'was' if len(names) == 1 else 'were'} refused{reason}"
+            text = f"{problem} ({Path(file).name}:{line}); {_LOOK}"
+            kind, entity = "refusal overlooked", recorder.here.entity
+            recorder.put("notice", now(), "WARN", text, entity, False, kind, problem, _LOOK, (file, line))
         return result
 
     node_class._set_parameters_atomically_common = set_known
