@@ -41,7 +41,7 @@ from cbtui.screens.parts.selection import LaneSelection
 from cbtui.screens.parts.sizes import SizeKeys
 from cbtui.screens.parts.ways_out import NextLesson, WaysBack
 from cbtui.screens.sized import SizedScreen
-from cbtui.screens.windows.diagnoses import problems_note
+from cbtui.screens.windows.finding_texts import problems_note
 from cbtui.screens.windows.jump import JumpScreen
 from cbtui.terminal.compositing import PatchCompositor
 from cbtui.terminal.garbage_collector import collect_now

@@ -24,11 +24,8 @@ from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.linear.narrative import told_finding
 from cbtui.screens.parts.cures import CureTrial
 from cbtui.screens.replay import ReplayScreen
-from cbtui.screens.windows.diagnoses import (
-    DiagnosesScreen,
-    problems_note,
-)
-from cbtui.screens.windows.finding_texts import details_of, row_of, title_of
+from cbtui.screens.windows.diagnoses import DiagnosesScreen
+from cbtui.screens.windows.finding_texts import details_of, problems_note, row_of, title_of
 from cbtui.screens.windows.prediction import PredictionExit
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.diagnosis_line import DiagnosisLine

@@ -18,11 +18,11 @@ from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
 from cbtui.keys.action import Scope
-from cbtui.keys.keymap import Keymap, canonical, keymap_of
+from cbtui.keys.keymap import canonical, keymap_of
 from cbtui.keys.refused import NOT_IN_DIAGNOSES
-from cbtui.looks.theme import GLYPHS, Charset
+from cbtui.looks.theme import Charset
 from cbtui.runs.judged.cures import Cure, Verdict, tried_in_vain
-from cbtui.runs.live.findings import ExplainedFinding, problem_count_text
+from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.screens.windows.finding_texts import cure_details, details_of, row_of, step_row, title_of
 from cbtui.screens.windows.window import PlainOptionList, WindowScreen
 from cbtui.widgets.key_bar import KeyBar
@@ -389,14 +389,6 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
 
 
 def _to_try(findings: Sequence[ExplainedFinding]) -> frozenset[object]:
-    """Return what identifies the problems, and those that have a cure, as some have only after a while."""
-    problems = [each for each in findings if each.is_problem]
-    curable = [each for each in problems if any(each.explanation.remedies)]
-    return frozenset(each.finding.key for each in problems) | {(each.finding.key,) for each in curable}
-
-
-def problems_note(findings: Sequence[ExplainedFinding], keymap: Keymap, charset: Charset) -> str:
-    """Return how many problems there are, and the key that lists them: ``2 problems · d``; "" for none."""
-    count = problem_count_text(findings)
-    opens = keymap.sign(Scope.LESSON, "diagnoses", charset)
-    return f"{count} {GLYPHS[charset].between} {opens}" if count else ""
+    """Return what identifies the problems, and once more those with a cure: it may come after a while."""
+    problems = ((each.finding.key, any(each.explanation.remedies)) for each in findings if each.is_problem)
+    return frozenset((key, each) for key, has_cure in problems for each in (False, has_cure))

@@ -5,9 +5,11 @@ from textwrap import wrap
 
 from textual.content import Content
 
+from cbtui.keys.action import Scope
+from cbtui.keys.keymap import Keymap
 from cbtui.looks.theme import GLYPHS, Charset
 from cbtui.runs.judged.cures import Cure
-from cbtui.runs.live.findings import ExplainedFinding
+from cbtui.runs.live.findings import ExplainedFinding, problem_count_text
 from cbtui.text.cells import visible
 from sim.diagnosis import location_text, sentence, with_stop
 from sim.quantities.durations import timestamp
@@ -88,3 +90,10 @@ def _folded(line: str, width: int, charset: Charset) -> str:
     """Return a line of code with line breaks where it is too long, and one before it."""
     pieces = wrap(line, width - 1, drop_whitespace=False, replace_whitespace=False) if width > 1 else [line]
     return "\n" + f"\n{GLYPHS[charset].ellipsis}".join(pieces)
+
+
+def problems_note(findings: Sequence[ExplainedFinding], keymap: Keymap, charset: Charset) -> str:
+    """Return how many problems there are, and the key that lists them: ``2 problems · d``; "" for none."""
+    count = problem_count_text(findings)
+    opens = keymap.sign(Scope.LESSON, "diagnoses", charset)
+    return f"{count} {GLYPHS[charset].between} {opens}" if count else ""
