@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import msgspec
 
 from sim.engine.callback_positions import LOCK
+from sim.engine.watchdogs.wait_descriptions import advice_on_job
 from sim.probes.own_code import place_text
 from sim.quantities.durations import timestamp
 from sim.trace.events import (
@@ -35,7 +36,12 @@ class HungCallbacks:
         self._at: dict[ThreadId, CallbackAt] = {}
         """Where callbacks are, since the first event that had them there."""
         self._told: set[ThreadId] = set()
+        self._jobs: dict[ThreadId, tuple[str, str, int]] = {}
         self._is_over = False
+
+    def waits_for_job(self, thread: ThreadId, job: tuple[str, str, int]) -> None:
+        """Note where a job waits for another one, while the callback of a thread waits for a job."""
+        self._jobs[thread] = job
 
     def follow(self, event: AnyEvent) -> None:
         """Follow an event of the trace."""
@@ -59,7 +65,8 @@ class HungCallbacks:
             waits = at.doing is Doing.WAITS and not at.until and t - at.t >= _PATIENCE
             if waits and thread not in self._told and not self._comes(at):
                 self._told.add(thread)
-                yield _notice(at, t)
+                job = self._jobs.get(thread, ("", "", 0))
+                yield _notice(at, t, advice_on_job(place_text(*job)) if job[0] else "")
 
     def _comes(self, at: CallbackAt) -> bool:
         """Whether a lock may come: nobody knows who holds it, or the last holder in a row just sleeps."""
@@ -76,12 +83,13 @@ def _where(at: CallbackAt) -> tuple[object, ...]:
     return at.entity, at.call, at.frames
 
 
-def _notice(at: CallbackAt, t: Nanoseconds) -> Notice:
+def _notice(at: CallbackAt, t: Nanoseconds, advice: str) -> Notice:
     problem = f"has not come back since {timestamp(at.t)}"
     file, function, line = at.frames[-1]
     what = f"waits for {at.lock or 'a lock'}" if at.call == LOCK else f"waits in {at.call}()"
     where = f"{at.frames[0][1]} {problem} ({place_text(file, function, line)})"
     text = f"{where}: it {what}; its thread serves nothing else meanwhile"
+    text = "; ".join(filter(None, (text, advice)))
     return Notice(
         t,
         Severity.WARN,
@@ -89,5 +97,6 @@ def _notice(at: CallbackAt, t: Nanoseconds) -> Notice:
         at.entity,
         kind=NoticeKind.NO_PROGRESS,
         problem=problem,
+        advice=advice,
         thread=at.thread,
     )

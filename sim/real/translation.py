@@ -145,6 +145,7 @@ class Translation:
                 if call:
                     yield from self._replied(t, call, service, response)
             case At():
+                self._hung.waits_for_job(line.thread, line.job)
                 yield position_of(line, t)
             case ProcessEnded(process=process):
                 yield from self._left_open.closed(process, t)

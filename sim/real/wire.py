@@ -111,6 +111,8 @@ class At(msgspec.Struct, frozen=True, array_like=True, tag="at"):
     """Where that lock was taken."""
     taken_by: str = ""
     """The name of the thread that holds it, if it runs no callback."""
+    job: tuple[str, str, int] = ("", "", 0)
+    """File, function and line at which a job of a pool waits for another job, if this waits for a job."""
 
 
 class Replied(msgspec.Struct, frozen=True, array_like=True, tag="replied"):

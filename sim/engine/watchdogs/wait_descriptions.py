@@ -74,9 +74,14 @@ def advice_on_pools() -> str:
         inside = list(takewhile(lambda frame: frame not in calls_the_program, outwards(top)))
         names = [frame.f_code.co_qualname for frame in inside]
         if JOB in names and RESULT in names[: names.index(JOB)]:
-            where = f"a job that waits for another job ({own_code.place_of(top)}) keeps a worker of its pool"
-            return f"{where}: let it call the function itself, or give the pool more workers"
+            return advice_on_job(own_code.place_of(top))
     return ""
+
+
+def advice_on_job(place: str) -> str:
+    """Return advice on a job that waits for another one at a place."""
+    keeps = f"a job that waits for another job ({place}) keeps a worker of its pool"
+    return f"{keeps}: let it call the function itself, or give the pool more workers"
 
 
 def waits(thread: VirtualThread) -> str:

@@ -5,6 +5,9 @@ from __future__ import annotations
 import sys
 import sysconfig
 import threading
+from concurrent.futures import Future
+from concurrent.futures.thread import _WorkItem
+from itertools import takewhile
 from typing import TYPE_CHECKING, Any
 
 from .callbacks import is_own
@@ -36,6 +39,7 @@ _HOLDERS_EVERY = 50_000_000
 """Nanoseconds between two looks for the holders of locks."""
 _Named = tuple[int, int, tuple[str, int], str]
 _NOBODY: _Named = (0, 0, ("", 0), "")
+_JOB, _RESULT = _WorkItem.run.__code__, Future.result.__code__
 
 
 class _Sample:
@@ -45,8 +49,8 @@ class _Sample:
         self.entity = entity
         self.instructions = _instructions(stack)
         self.position = _position(stack)
-        self.holder = _NOBODY
-        """Who holds the lock for which it waits."""
+        self.more: tuple[Any, ...] = _NOBODY
+        """Who holds the lock for which it waits, and where a job of a pool waits for another one."""
 
 
 class PositionSampler:
@@ -105,7 +109,10 @@ class PositionSampler:
     def _look_for_holders(
         self, stand: list[tuple[int, list[FrameType]]], tops: dict[int, FrameType], running: dict[int, int]
     ) -> None:
-        """Report who holds the locks for which threads ``stand`` where they stood before."""
+        """Report who holds the locks for which threads wait that ``stand`` where they stood before.
+
+        And where a job waits for another one, if one of them waits for a job.
+        """
         idents, held = self._recorder.idents, None
         threads = {idents[each]: each for each in running}
         for thread, stack in stand:
@@ -116,10 +123,12 @@ class PositionSampler:
                 held = held or HeldLocks(tops, self._suspended(), _is_written)
                 if _instructions(stack) == latest.instructions:  # it has not gone on meanwhile
                     found = held.holder_of(lock, idents[thread])
-            holder = _NOBODY if found is None else _named(found, threads)
-            if latest.position is not None and latest.holder != holder:
-                latest.holder = holder
-                self._recorder.put("at", now(), latest.entity, thread, *latest.position, *holder)
+            more: tuple[Any, ...] = _NOBODY if found is None else _named(found, threads)
+            if any(frame.f_code is _RESULT for frame in stack):
+                more = (*_NOBODY, _waiting_job(tops))
+            if latest.position is not None and latest.more != more:
+                latest.more = more
+                self._recorder.put("at", now(), latest.entity, thread, *latest.position, *more)
 
     def _suspended(self) -> dict[Any, int]:
         known = self._recorder.suspended
@@ -133,6 +142,17 @@ def _named(holder: Holder, threads: dict[int, int]) -> _Named:
     if not (thread or holder.entity):
         name = next((each.name for each in threading.enumerate() if each.ident == holder.ident), "")
     return thread, holder.entity, holder.taken_at, name
+
+
+def _waiting_job(tops: dict[int, FrameType]) -> tuple[str, str, int]:
+    """File, function and line at which a job of a pool waits for another job; "" and 0 for none."""
+    for top in tops.values():
+        stack = [*takewhile(lambda frame: _module(frame) != _CALLBACKS, _stack(top, until=""))]
+        codes = [frame.f_code for frame in stack]
+        own = next(filter(_is_written, stack), None)
+        if own is not None and _JOB in codes and _RESULT in codes[: codes.index(_JOB)]:
+            return own.f_code.co_filename, own.f_code.co_name, own.f_lineno
+    return "", "", 0
 
 
 def _instructions(stack: list[FrameType]) -> list[tuple[CodeType, int]]:
