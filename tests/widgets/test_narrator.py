@@ -292,12 +292,15 @@ def test_what_goes_before_a_timer_that_is_due_again_was_ready_at_the_executors_l
     run.message(heard, 1.5)
     run.wait(heard, 1.5, 4.0, Reason.GROUP_HELD, tick)
     run.wait(tick, 2.0, 4.0, Reason.GROUP_HELD, tick)
+    still = run.subscription(group, "/b", "still")
+    run.message(still, 1.5)
+    run.wait(still, 1.5, 5.0, Reason.GROUP_HELD, tick)
     run.callback(heard, thread, 4.0, 0.0)
     run.callback(tick, thread, 4.0, 0.5)
     returned, first, second, *_ = narration(told(run), ns(4.0))
     assert returned == "4.000 s: tick returns after 3.0 s, group A is free"
     assert "heard has a message, 2.5 s old, it was ready when the executor last looked, group A" in first
-    assert "last looked" not in second
+    assert "tick is due, timers come first, group A" in second
 
 
 def test_a_callback_that_stands_in_its_call_is_told_after_it_has_begun_to() -> None:

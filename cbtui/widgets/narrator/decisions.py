@@ -12,7 +12,7 @@ from sim.trace.events import EntityId, EntityKind, Reason, ThreadId
 from sim.trace.figures.waiting import (
     admits_others,
 )
-from sim.trace.model import Blocked, Deed, EntityInfo, Nanoseconds, Span, Wait, Window
+from sim.trace.model import Blocked, Deed, EntityInfo, Nanoseconds, Span, Window
 from sim.trace.timeline import Timeline
 
 _IN_ORDER = {
@@ -119,7 +119,7 @@ def _begun(span: Span, deed: Deed, timeline: Timeline, *, returns: bool) -> Iter
         return
     reasons = [
         f"{is_free}: {entity.spoken_name} {_readiness(entity, span)}",
-        *_why_first(entity, [*left_waiting(timeline, span.start), *_passed_over(span, timeline)], timeline),
+        *_why_first(entity, span, timeline),
     ]
     if asks_groups(timeline):
         reasons.append(f"{group_of(entity.id, timeline)} lets it in")
@@ -139,26 +139,27 @@ def _readiness(entity: EntityInfo, span: Span) -> str:
     return "is ready"
 
 
-def _why_first(entity: EntityInfo, left: Sequence[Wait], timeline: Timeline) -> Iterator[str]:
+def _why_first(entity: EntityInfo, span: Span, timeline: Timeline) -> Iterator[str]:
     """Why an entity was chosen: the others lack a thread, or come after it in the order."""
+    left = left_waiting(timeline, span.start)
     if any(wait.reason is Reason.EVENT_QUEUE for wait in left):
         yield "it came first"
-    others = [
-        timeline.entities[wait.entity]
-        for wait in left
-        if (wait.reason is Reason.NO_FREE_WORKER or wait.is_for_own_call) and wait.entity != entity.id
-    ]
-    if others:
-        is_first = all(place_in_order(entity) < place_in_order(other) for other in others)
-        yield _IN_ORDER[entity.kind] if is_first else "it was ready when the executor last looked"
+    others = {wait.entity for wait in left if wait.reason is Reason.NO_FREE_WORKER}
+    for wait in left:  # its group was free for all whom it lets in one after the other
+        if timeline.entities[wait.entity].group == entity.group and wait.since < span.start:
+            others.add(wait.entity)
+    others |= _next_in_turn(span, timeline)
+    if others := others - {entity.id}:
+        place, places = place_in_order(entity), [place_in_order(timeline.entities[each]) for each in others]
+        yield _IN_ORDER[entity.kind] if place < min(places) else "it was ready when the executor last looked"
 
 
-def _passed_over(span: Span, timeline: Timeline) -> Iterator[Wait]:
-    """The waits of those that were ready before a call began and whose turn on its thread came at once after.
+def _next_in_turn(span: Span, timeline: Timeline) -> set[EntityId]:
+    """Those that were ready before a call began, and whose turn on its thread came in the same moment.
 
-    What waited for its own last call had only the turn to wait for, once that was over.
+    A group that kept them was free by then: of the calls of a thread one follows the other.
     """
     at = Window(max(0, span.start - 1), span.start + 1)
     calls = (each for each in timeline.spans_on(span.thread, at) if each.start == span.start)
-    for entity in {each.entity for each in calls if each.number > span.number}:
-        yield from (each for each in timeline.waits_of(entity, at) if each.end == span.start)
+    later = {each.entity for each in calls if each.number > span.number}
+    return {each for each in later if any(wait.end == span.start for wait in timeline.waits_of(each, at))}
