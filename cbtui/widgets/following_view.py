@@ -43,10 +43,10 @@ class FollowingView(InkedView):
         self._fit_size()
 
     def watch_scroll_y(self, old_value: float, new_value: float) -> None:
-        """Follow the end if the user has scrolled there."""
+        """Follow the end if the user has scrolled down to it; a larger view only comes nearer to it."""
         super().watch_scroll_y(old_value, new_value)
         if not self._fitting:
-            self.follows = new_value >= self.max_scroll_y
+            self.follows = new_value >= self.max_scroll_y and (self.follows or new_value > old_value)
 
     def _fit_size(self) -> None:
         self._fitting = True
