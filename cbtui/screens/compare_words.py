@@ -29,7 +29,8 @@ def about(number: int, side: ComparedSide, width: int, charset: Charset) -> tupl
     A failure that is too long for the width is cut.
     """
     timeline = side.timeline
-    state = "goes on" if side.alive() else f"ends at {timestamp(timeline.end)}"
+    begun = "goes on" if timeline.entities else "is starting"
+    state = begun if side.alive() else f"ends at {timestamp(timeline.end)}"
     losses = all_losses(timeline, timeline.end)
     lost = f"lost {'-' if losses is None else losses}"
     ended = timeline.ended
