@@ -76,7 +76,7 @@ class Choices(ScreenPart):
             return
         verdict = puzzle.goal.check().judge(run.timeline)
         if verdict.passed:
-            self.reached = f" {verdict.seen}." if puzzle.goal.raises else ""
+            self.reached = "" if puzzle.goal.says else f" {verdict.seen}."
             if self.solution is None:
                 self.host.console.progress.passes(puzzle.id)
             if self.question is not None:
