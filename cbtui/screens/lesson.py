@@ -10,7 +10,7 @@ from cbtui.engines.session import Deliver, Ended, OpenSession
 from cbtui.learning.lesson_page import PageSection, page_of
 from cbtui.learning.stage import LessonStep
 from cbtui.looks.theme import Charset
-from cbtui.runs.live.live_run import LiveRun
+from cbtui.runs.live.live_run import LiveRun, RunState
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.shown_program import ShownProgram
 from cbtui.screens.choosing import ChoosingScreen
@@ -217,7 +217,12 @@ class LessonScreen(RunScreen[LiveRun]):
 
     @on(Prompt.LineSubmitted)
     def _give_line(self, message: Prompt.LineSubmitted) -> None:
-        self.runs.run.give_line(message.text)
+        run = self.runs.run
+        run.give_line(message.text)
+        if run.state is RunState.PAUSED:
+            when = f"when it goes on: {self.key('resume')}"
+            told = f"Time stands still: what the nodes are asked they answer {when}."
+            self.tell(told, lambda: run.state is RunState.PAUSED)
 
     @on(Prompt.LineInterrupted)
     def _interrupt_line(self) -> None:

@@ -127,11 +127,22 @@ class WorldKeys(ScreenPart):
 
     def action_call_service(self) -> None:
         """Call the lesson's service with true."""
-        self.runs.run.call(True)
+        self._call(True)
 
     def action_call_service_off(self) -> None:
         """Call the lesson's service with false."""
-        self.runs.run.call(False)
+        self._call(False)
+
+    def _call(self, data: bool) -> None:
+        """Call the service, and say so if that is not to be seen at once."""
+        run = self.runs.run
+        run.call(data)
+        if run.state is RunState.PAUSED:
+            when = f"when the run goes on: {self.host.key('resume')}"
+            self.host.tell(f"The service is called {when}.")
+        elif run.state is RunState.STARTING:
+            when = "as soon as the program has started"
+            self.host.tell(f"The service is called {when}.")
 
     def action_no_call_service(self) -> None:
         """Say that the programs offer no SetBool service."""
