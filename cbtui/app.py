@@ -14,6 +14,7 @@ from textual.notifications import Notify
 from textual.screen import Screen
 from textual.theme import ThemeProvider
 from textual.types import CSSPathType
+from textual.widgets import Input
 
 from cbtui.keys.action import Scope
 from cbtui.keys.bindings import bindings_of
@@ -301,6 +302,15 @@ class CbtuiApp(EndingApp):
             else:
                 clear_read(self)
         await super().on_event(event)
+
+    def on_key(self, event: Key) -> None:
+        """Say that a letter, a digit or tab does nothing if it reaches the app and is no key in force."""
+        pressed = (event.character if event.is_printable else event.key) or ""
+        is_typed = isinstance(self.focused, Input)
+        if pressed.isalnum() and not is_typed and event.key not in self.screen.active_bindings:
+            helps = self.keys.sign(Scope.EVERYWHERE, "help", self.charset)
+            clear_hints(self)
+            self.notify(f"{pressed} does nothing here; {helps} lists the keys.", markup=False)
 
     def action_help(self) -> None:
         """Show every key."""

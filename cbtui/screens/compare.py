@@ -70,8 +70,7 @@ class CompareScreen(SizedScreen[None]):
     """Compares two runs; one that is still going on is drawn and counted as it grows.
 
     Both share the window of time and the cursor, which is clamped to the end of each run. The playhead
-    follows the end of a live run, else that of the longer one. ``bounds`` is the window of the table when it
-    is not about the window on screen; None: all that both cover. The UI thread reads the timelines.
+    follows the end of a live or the longer run. ``bounds`` is the table's window; None: all that both cover.
     """
 
     SCOPE = Scope.COMPARE
@@ -351,6 +350,7 @@ class CompareScreen(SizedScreen[None]):
         """Say why a key of a run does nothing here."""
         meant = keymap_of(self.app).on(event.key, Scope.COMPARE, Scope.LESSON)
         if meant and canonical(event.key) not in self.query_one(KeyBar).in_force():
+            event.stop()
             for reason in why_nothing(meant, self.charset):
                 clear_hints(self.app)  # two would reach down to the verdict
                 self.notify(reason, markup=False)

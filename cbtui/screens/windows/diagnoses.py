@@ -352,6 +352,7 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         """Say why a key of the window does nothing now."""
         meant = keymap_of(self.app).on(event.key, self.SCOPE)
         if meant and canonical(event.key) not in self.query_one(KeyBar).in_force():
+            event.stop()
             self._explain_refused(meant[0].id)
 
     def _explain_refused(self, action: str) -> None:

@@ -148,6 +148,23 @@ async def test_space_goes_on_after_a_pause() -> None:
         assert app.engines.latest.commands == [Pause(), ResetWorld(), Resume()]
 
 
+async def test_a_call_in_a_run_that_stands_still_is_said_to_come_later() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "space", "s")
+        [told] = [each.message for each in app._notifications]
+        assert told == "The service is called when the run goes on: ␣."
+
+
+async def test_a_letter_that_is_no_key_says_that_it_does_nothing() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "b")
+        await press(pilot, "9")
+        [told] = [each.message for each in app._notifications]
+        assert told == "9 does nothing here; ? lists the keys."
+        await press(pilot, "colon", "b")
+        assert [each.message for each in app._notifications] == [told]
+
+
 @pytest.mark.slow
 async def test_speed_is_shown_and_ends_where_it_cannot_be_changed_further() -> None:
     async with console() as (app, pilot):
