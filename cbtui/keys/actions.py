@@ -172,11 +172,11 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         (
             "previous_event",
             "left_curly_bracket",
-            "event",
+            "bar",
             "Go back to the selected lane's previous bar",
             _EVENTS,
         ),
-        ("next_event", "right_curly_bracket", "event", "Go on to the selected lane's next bar", _EVENTS),
+        ("next_event", "right_curly_bracket", "bar", "Go on to the selected lane's next bar", _EVENTS),
         ("deselect", "escape", "leave", "Leave the lanes, and clear the selection"),
         ("copy_details", "y", "copy", "Copy the selected bar's details, or the moment's"),
         ("next_pane", "tab", "next pane", "Go to the next pane"),

@@ -24,7 +24,7 @@ from cbtui.widgets.log import LogFilter, LogLines
 from cbtui.widgets.shell import ProgramKeyboard, Prompt, ShellOutput
 from lessons.lesson import Lesson
 
-_ON_LANES = ("zoom", "pan", "select", "code", "lane", "event", "leave", "copy")
+_ON_LANES = ("zoom", "pan", "select", "code", "lane", "bar", "leave", "copy")
 """Labels of the actions that the lanes' frame shows."""
 
 _FIRST_ON: Mapping[type[Widget], Sequence[str]] = {ShellOutput: ("ros2", "type"), LogLines: ("filter",)}
