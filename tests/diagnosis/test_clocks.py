@@ -37,6 +37,51 @@ def test_timers_that_follow_a_clock_that_is_never_sent_are_told(
     assert ("clock-never-starts" in {each.rule.id for each in found}) is told
 
 
+SLEEPER = """
+import threading
+import rclpy
+from rclpy.clock import Clock, ClockType
+from rclpy.duration import Duration
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+
+rclpy.init()
+node = Node("sleeper", parameter_overrides=[Parameter("use_sim_time", value=True)])
+{before}
+{sleep}
+"""
+IN_MAIN = "threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()"
+IN_CALLBACK = (
+    "sleep = lambda: {sleep}\nnode.create_timer(0.5, sleep, clock=Clock(clock_type=ClockType.STEADY_TIME))"
+)
+SLEEP = "node.get_clock().sleep_for(Duration(seconds=1))"
+OF_OTHER = "Clock().sleep_for(Duration(seconds=1))"
+
+
+@pytest.mark.parametrize(
+    ("before", "sleep", "place"),
+    [
+        (IN_MAIN, SLEEP, "node.py:12"),
+        (IN_CALLBACK.format(sleep=SLEEP), "rclpy.spin(node)", "node.py:11"),
+        (IN_MAIN, OF_OTHER, ""),
+        (IN_CALLBACK.format(sleep=OF_OTHER), "rclpy.spin(node)", ""),
+    ],
+    ids=["main", "callback", "another clock in main", "another clock"],
+)
+def test_a_sleep_by_a_clock_that_is_never_sent_is_told_with_its_line(
+    before: str, sleep: str, place: str, tmp_path: Path
+) -> None:
+    timeline = run_program(tmp_path, SLEEPER.format(before=before, sleep=sleep), 3.0).timeline
+    found = [each for each in diagnose(timeline) if each.rule.id == "clock-never-starts"]
+    told = [each.explained(timeline) for each in found]
+    assert [str(each.place) for each in told] == ([place] if place else [])
+    for each in told:
+        line = place.rpartition(":")[2]
+        assert each.what.startswith(
+            f"the sleep of line {line} does not end: use_sim_time is true, and nothing"
+        )
+
+
 def test_a_timer_of_period_zero_that_is_called_once_is_no_problem(tmp_path: Path) -> None:
     text = """
 import rclpy

@@ -65,6 +65,16 @@ def sim_time_set_at(source: SourceEditor) -> int:
     return found[0].lineno if len(found) == 1 else 0
 
 
+@asked_of_file
+def sleeps_by_clock_at(source: SourceEditor) -> int:
+    """Return the line of the first sleep by the clock of a node; 0 for none."""
+    calls = [each for each in source.nodes(ast.Call) if ast.unparse(each.func).endswith(_CLOCK_SLEEPS)]
+    return min((each.lineno for each in calls), default=0)
+
+
+_CLOCK_SLEEPS = (".get_clock().sleep_for", ".get_clock().sleep_until")
+
+
 def leave_sim_time_off(source: SourceEditor, line: int) -> None:
     """Set ``use_sim_time`` to ``False`` at a line."""
     for each in _sim_time_on(source):

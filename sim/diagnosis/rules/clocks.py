@@ -6,7 +6,13 @@ from itertools import chain, islice
 
 from sim.diagnosis.edits.clocks import follow_jumps, kept_at
 from sim.diagnosis.edits.polling import leave_out
-from sim.diagnosis.edits.timers import keep_the_fraction, leave_sim_time_off, sim_time_set_at, triggered_at
+from sim.diagnosis.edits.timers import (
+    keep_the_fraction,
+    leave_sim_time_off,
+    sim_time_set_at,
+    sleeps_by_clock_at,
+    triggered_at,
+)
 from sim.diagnosis.rule import (
     Explanation,
     Finding,
@@ -22,7 +28,7 @@ from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import listed, who
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
-from sim.trace.events import EntityId, EntityKind
+from sim.trace.events import Doing, EntityId, EntityKind
 from sim.trace.events import TimesKept as Kept
 from sim.trace.model import EntityInfo, Nanoseconds, Span, Window
 from sim.trace.timeline import Timeline
@@ -31,11 +37,12 @@ from sim.trace.timeline import Timeline
 class ClockNeverStarts(Rule):
     """The timers of a node with ``use_sim_time`` never run: nothing has been sent on ``/clock``.
 
-    A timer of another clock runs all the same: only one that should have run twice by now is told.
+    A timer of another clock runs all the same: only one that should have run twice by now is told. Where none
+    is, a callback that sleeps by the node's clock is, or, if none of the node's has run, such a line.
     """
 
     id = "clock-never-starts"
-    summary = "timers follow /clock, on which nothing is sent"
+    summary = "timers, or sleeps, follow /clock, on which nothing is sent"
     threshold: Nanoseconds = SECOND
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
@@ -47,27 +54,43 @@ class ClockNeverStarts(Rule):
         for clock in every:
             if clock.name == _CLOCK and is_models(clock) and not _calls(clock.id, timeline):
                 still = _never_ran(clock, every, timeline)
-                if still:
-                    yield Finding(self, 0, view.end, still[0], clock.id)
+                file, line = ("", 0) if still else _sleeps_at(clock, view)
+                if still or line:
+                    subject = still[0] if still else 0
+                    yield Finding(self, 0, view.end, subject, clock.id, detail=file, size=line)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        still = _never_ran(timeline.entities[found.culprit], timeline.entities.values(), timeline)
-        file = entity_of(found, timeline).file
-        line = sim_time_set_at(file)
-        never = f"never {'runs' if len(still) == 1 else 'run'}"
+        clock = timeline.entities[found.culprit]
+        still = _never_ran(clock, timeline.entities.values(), timeline)
+        file = clock.made_at[0]
+        line, place = sim_time_set_at(file), line_location(found.detail, found.size)
+        what, then = f"the sleep of line {found.size} does not end", "no sleep by it ends"
+        if place is None:
+            never = f"never {'runs' if len(still) == 1 else 'run'}"
+            what, then = f"{listed(who(each, timeline) for each in still)} {never}", "no timer is due"
         return Explanation(
-            f"{listed(who(each, timeline) for each in still)} {never}: use_sim_time is true, and nothing has "
-            f"been sent on {_CLOCK}",
-            f"the time of such a node is what {_CLOCK} says last: it is 0 until something comes, and no "
-            "timer is due",
+            f"{what}: use_sim_time is true, and nothing has been sent on {_CLOCK}",
+            f"the time of such a node is what {_CLOCK} says last: it is 0 until something comes, and {then}",
             f"start what publishes {_CLOCK} (a simulator, or ros2 bag play --clock); without one leave "
             "use_sim_time false",
-            line_location(file, line) or place_of(found.subject, timeline),
+            place or line_location(file, line) or place_of(found.subject, timeline) or made_at(clock),
             remedies=by_edit(line_location(file, line), "leave use_sim_time false", leave_sim_time_off),
         )
 
 
 _CLOCK = "/clock"
+
+
+def _sleeps_at(clock: EntityInfo, view: TimelineView) -> tuple[str, int]:
+    """Return where a node's callback sleeps by its clock, or, if none has run, a line that would; else 0."""
+    timeline = view.timeline
+    for at in view.positions:
+        waits = at.call.startswith("Clock.sleep") and at.doing is Doing.WAITS
+        if waits and at.entity and timeline.entities[at.entity].node == clock.node:
+            return at.file, at.line
+    file, line = clock.made_at[0], sleeps_by_clock_at(clock.made_at[0])
+    idle = not any(_calls(each.id, timeline) for each in view.few_entities if each.node == clock.node)
+    return (file, line) if line and idle else ("", 0)
 
 
 def _never_ran(clock: EntityInfo, among: Iterable[EntityInfo], timeline: Timeline) -> list[EntityId]:

@@ -352,7 +352,9 @@ def _hears_clock(frame: FrameType) -> bool:
 
 
 def _place(frame: FrameType) -> tuple[str, int]:
-    """File and line at which a frame is."""
+    """File and line at which a frame is, or the program's own that made it, as for rclpy's clock."""
+    while frame.f_back is not None and not is_own(frame):
+        frame = frame.f_back
     return frame.f_code.co_filename, frame.f_lineno
 
 
