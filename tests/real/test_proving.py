@@ -210,7 +210,7 @@ def test_a_program_is_proved_on_both_grounds(tmp_path: Path, capsys: pytest.Capt
     assert cli.main(["prove", str(file), "--for", "3.3", "--no-robot"]) == 1
     # A busy machine may let a call on real rclpy fall out.
     said = capsys.readouterr().out
-    assert re.search(r"on the model <lambda> runs 1[0-3] times more: 16 against [3-6]\b", said)
+    assert re.search(r"on the model <lambda>:7 runs 1[0-3] times more: 16 against [3-6]\b", said)
     file.write_text(DIFFERS.replace("0.2", "0.5"))
     assert cli.main(["prove", str(file), "--for", "3.3", "--no-robot"]) == 0
     said = capsys.readouterr().out
