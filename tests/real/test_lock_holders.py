@@ -1,5 +1,6 @@
 """The holder of a lock is found in frames and source on real rclpy, and told as on the model."""
 
+import os
 import re
 import sys
 import threading
@@ -200,6 +201,20 @@ def test_a_suspended_coroutine_holds_the_lock_of_the_with_in_which_it_awaits() -
         line = Store.awaits.__code__.co_firstlineno + 1
         assert holder(waiter, {coroutine: 12}) == Holder(0, 12, (__file__, line))
         coroutine.close()
+
+
+@pytest.mark.parametrize("edited", [False, True])
+def test_in_a_file_that_was_edited_since_the_program_began_nothing_is_looked_up(
+    tmp_path: Path, edited: bool
+) -> None:
+    file, store = tmp_path / "node.py", Store()
+    file.write_text("def wants(store):\n    with store.lock:\n        pass\n")
+    if not edited:
+        os.utime(file, (0, 0))
+    program: dict[str, Any] = {"__name__": "node"}
+    exec(compile(file.read_text(), str(file), "exec"), program)
+    with standing(store, store.keeps, lambda: program["wants"](store)) as (_, waiter):
+        assert (holder(waiter) is None) is edited
 
 
 TWICE = """

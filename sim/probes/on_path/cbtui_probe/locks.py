@@ -2,7 +2,7 @@
 
 A frame inside the body of a ``with`` holds its lock. Expressions are read in the source, and resolved by
 plain look-ups in frames and objects, so that no code of the program runs. Python 3.10 does not tell the
-columns of an instruction: there nothing is found.
+columns of an instruction: there nothing is found, nor in a file that was changed since the program began.
 """
 
 from __future__ import annotations
@@ -10,10 +10,13 @@ from __future__ import annotations
 import ast
 import linecache
 import threading
+import time
 from collections import defaultdict
+from contextlib import suppress
 from functools import lru_cache
 from inspect import getattr_static
 from itertools import islice
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
@@ -23,6 +26,7 @@ if TYPE_CHECKING:
 Place = tuple[int, int, int, int]
 """First and last line, first and last column in bytes."""
 UNKNOWN = (0, 0, 0, 0)
+_BEGAN = time.time()
 _LOCK, _RLOCK = type(threading.Lock()), type(threading.RLock())
 
 
@@ -158,10 +162,9 @@ def _function(code: CodeType) -> _Function:
 def _functions(file: str) -> dict[tuple[int, str], _Function]:
     """The functions of a file that take locks, by their first lines and names."""
     found: defaultdict[tuple[int, str], _Function] = defaultdict(lambda: _Function({}, []))
-    try:
-        _collect(ast.parse("".join(linecache.getlines(file))), (0, "<module>"), found)
-    except (SyntaxError, ValueError, RecursionError):
-        return {}
+    with suppress(OSError, SyntaxError, ValueError, RecursionError):
+        if Path(file).stat().st_mtime <= _BEGAN:
+            _collect(ast.parse("".join(linecache.getlines(file))), (0, "<module>"), found)
     return dict(found)
 
 
