@@ -8,7 +8,7 @@ from difflib import get_close_matches
 from sim.engine.failures.missing_names import on_hidden
 from sim.interfaces import kinds_sentence, packages
 from sim.ros.importing import HOMES
-from sim.ros.rclpy._namesakes import NAMESAKES
+from sim.ros.rclpy._namesakes import NAMESAKES, VALIDATORS
 
 _PIP = {
     "Crypto": "pycryptodome",
@@ -142,7 +142,7 @@ def on_missing(module: str) -> str:
         parent = sys.modules.get(module.rpartition(".")[0])
         folder = module.rpartition(".")[0]
         siblings = [each.name for each in pkgutil.iter_modules(getattr(parent, "__path__", ()))]
-        siblings += NAMESAKES if folder == "rclpy" else ()
+        siblings += (*NAMESAKES, *VALIDATORS) if folder == "rclpy" else ()
         return _nearest(module, (f"{folder}.{each}" for each in siblings))
     known = {*packages(), *sys.stdlib_module_names, *_KNOWN, *HOMES, "launch", "launch_ros", "numpy"}
     return _KNOWN.get(package) or _nearest(package, known) or _on_unknown(package)

@@ -1,4 +1,4 @@
-"""The modules of rclpy that are each one module of the model under another name."""
+"""The modules of rclpy that have only what others of the model have."""
 
 import sys
 from importlib.machinery import ModuleSpec
@@ -39,9 +39,24 @@ NAMESAKES = {
 """Where in ``sim.ros`` the content of each is."""
 
 
+_OF_NAMES = ("InvalidServiceNameException", "InvalidTopicNameException")
+VALIDATORS = {
+    "validate_full_topic_name": _OF_NAMES,
+    "validate_namespace": ("InvalidNamespaceException",),
+    "validate_node_name": ("InvalidNodeNameException",),
+    "validate_parameter_name": ("InvalidParameterException",),
+    "validate_topic_name": _OF_NAMES,
+}
+"""What else is in the modules of one function each of ``sim.ros.naming.validation``."""
+
+
 def put_into(package: str) -> None:
-    """Make these modules of a package: each has what ``*`` imports from the model's."""
-    for name, of in NAMESAKES.items():
+    """Make these modules of a package: each of the first has what ``*`` imports from the model's."""
+    found = {name: [f"{of} import *"] for name, of in NAMESAKES.items()}
+    for name, errors in VALIDATORS.items():
+        found[name] = [f"naming.validation import {name}", f"exceptions import {', '.join(errors)}"]
+    for name, imports in found.items():
         module = module_from_spec(ModuleSpec(f"{package}.{name}", None))
-        exec(f"from sim.ros.{of} import *", vars(module))
+        for each in imports:
+            exec(f"from sim.ros.{each}", vars(module))
         sys.modules[module.__name__] = module

@@ -37,7 +37,7 @@ def test_every_module_is_the_same_under_both_names() -> None:
         "import rclpy\n"
         "warnings.simplefilter('ignore', DeprecationWarning)\n"
         "names = [found.name for found in pkgutil.walk_packages(rclpy.__path__, 'rclpy.')]\n"
-        "names += [f'rclpy.{each}' for each in rclpy._namesakes.NAMESAKES]\n"
+        "names += [f'rclpy.{each}' for each in rclpy._namesakes.NAMESAKES | rclpy._namesakes.VALIDATORS]\n"
         "for name in names:\n"
         "    model = importlib.import_module(f'sim.ros.{name}')\n"
         "    assert importlib.import_module(name) is model, name\n"
