@@ -1,4 +1,4 @@
-"""Edits of action servers: what executes a goal, what ends one, also if it is cancelled, and its result."""
+"""Edits of action servers: what executes a goal, what ends one that is cancelled, and its result."""
 
 import ast
 
@@ -47,16 +47,6 @@ def return_result(source: SourceEditor, line: int, server: tuple[str, int]) -> N
     if source.nodes(ast.Return, callback):
         raise NotSimpleError
     add_at_end(source, callback, f"return {_action_of(source, callback.name, server[1])}.Result()")
-
-
-def succeed_before_return(source: SourceEditor, line: int) -> None:
-    """Let the execute callback that is defined at a line end its goal before its only return."""
-    callback = defined_at(source, line)
-    returns, given = source.nodes(ast.Return, callback), callback.args.args
-    ends = {each.attr for each in source.nodes(ast.Attribute, callback)} & {"succeed", "abort", "canceled"}
-    if len(returns) != 1 or ends or len(given) != 1 + source.is_method(callback):
-        raise NotSimpleError
-    source.insert_before(returns[0], f"{given[-1].arg}.succeed()\n{indentation(returns[0])}")
 
 
 def _place(node: ast.expr) -> tuple[int, int]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from sim.diagnosis.edits.actions import end_if_cancelled, execute_accepted_goals, succeed_before_return
+from sim.diagnosis.edits.actions import end_if_cancelled, execute_accepted_goals
 from sim.diagnosis.rule import (
     Explanation,
     Finding,
@@ -132,14 +132,12 @@ class GoalStateNotSet(Rule):
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         server, subject = entity_of(found, timeline), who(found.subject, timeline)
-        place, cure = place_of(found.subject, timeline), "call succeed() on the goal handle before the return"
         return Explanation(
             f"{subject} returned without saying how its goal of {server.name} ended, so it was "
             f"aborted{often(found.count)}",
             "an execute callback returns the result, and has to say by itself whether its goal succeeded",
-            f"{cure}, or abort() or canceled() if it did not succeed",
-            place,
-            remedies=by_edit(place, cure, succeed_before_return),
+            "call succeed() on the goal handle before the return, or abort() or canceled() if it failed",
+            place_of(found.subject, timeline),
         )
 
 
