@@ -56,6 +56,7 @@ NOT_IN_COMPARISON = {
     "pan_later": _END,
     "step_back": _BEGINNING,
     "step": _END,
+    "deselect": "No bar is selected that could be cleared; q goes back.",
     "zoom_in": "This is the shortest stretch.",
     "zoom_out": "This is the longest stretch.",
     "scroll_table_up": _ALL_SHOWN,

@@ -121,7 +121,8 @@ class ExerciseScreen(RunScreen[LiveRun]):
         """Return the labels of what leads on; to run again takes no key, as saving the file does it."""
         if self._sheet.status is CheckStatus.PASSED:
             return ("next",)
-        on_checks = ("check", "go there", "watch", "hint", "lesson")
+        help_left = "hint" if self._keys.offer("hint", ()) else "solution"
+        on_checks = ("check", "go there", "watch", help_left, "lesson")
         return ("editor", *(on_checks if isinstance(self.focused, ChecksView) else ()))
 
     # what is shown
