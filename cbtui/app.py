@@ -305,7 +305,7 @@ class CbtuiApp(EndingApp):
 
     def on_key(self, event: Key) -> None:
         """Say that a letter, a digit or tab does nothing if it reaches the app and is no key in force."""
-        pressed = (event.character if event.is_printable else event.key) or ""
+        pressed = "tab" if event.key == "tab" else event.character or ""
         is_typed = isinstance(self.focused, Input)
         if pressed.isalnum() and not is_typed and event.key not in self.screen.active_bindings:
             helps = self.keys.sign(Scope.EVERYWHERE, "help", self.charset)

@@ -141,6 +141,7 @@ class CompareScreen(SizedScreen[None]):
             if side.damage is not None:
                 self.notify(side.damage, severity="warning", markup=False)
         self._enlarge("")
+        self.watch(self.query_one(ComparisonTable), "show_vertical_scrollbar", self.query_one(KeyBar).changed)
         self.set_interval(1 / FRAMES_A_SECOND, self.draw)
 
     # drawing
@@ -219,7 +220,6 @@ class CompareScreen(SizedScreen[None]):
                 self._title(found[0])
                 self.query_one(ComparisonTable).show(found[1])
                 self._show_first_difference()
-                self.call_after_refresh(self.query_one(KeyBar).changed)
                 self._comparing = False
                 self._rest_until = monotonic() + _REST_FACTOR * worked
                 return

@@ -363,7 +363,7 @@ def test_a_callback_whose_last_line_is_done_ends_and_does_not_begin() -> None:
     pool = ("ThreadPoolExecutor-0_0", "ThreadPoolExecutor-0_1")
     asked = ChoiceAsked(ns(0.1), 2, pool, ("", ""), (("", 0), ("", 0)), True, (), (0,))
     assert [option.text for option in options_of(asked, timeline)] == [
-        "left ends (runs now, Pool-0_0)",
+        "left returns, or raises (runs now, Pool-0_0)",
         "Pool-0_1 begins",
     ]
     assert [*kept_of(asked, timeline)] == ["not ready, or about to begin: right"]

@@ -225,6 +225,8 @@ class Refusals(ScreenPart):
         if self.lesson is None:
             self.host.tell("Your own program has no exercise; the lessons of the menu do.")
         elif self.lesson.exercise is None:
-            self.host.tell(f"{self.lesson.title} has no exercise: the lesson is done once it is explained.")
+            self.host.tell(
+                f"{self.lesson.title} has no exercise: it is done once it is predicted and explained."
+            )
         else:
             self.host.tell(with_exercise.format(key=self.host.key("explain")))

@@ -45,7 +45,7 @@ def options_of(question: ChoiceAsked, timeline: Timeline) -> Iterator[ChoiceOpti
         if line:
             where = f"{function if callback == function else f'{callback} in {function}'}, line {line}"
         elif callback:
-            where = f"{callback} ends"
+            where = f"{callback} returns, or raises"
         elif thread == ROBOT_THREAD:
             where, about = "the robot goes on", []
         else:

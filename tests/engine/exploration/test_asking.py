@@ -165,4 +165,4 @@ def test_a_thread_that_has_left_its_callback_is_not_told_to_be_at_the_line_that_
             for question in [each for each in batch if isinstance(each, ChoiceAsked)]:
                 told += [option.text for option in options_of(question, timeline)]
                 run.session.send(Choose(0))
-    assert told[:2] == ["timer_callback ends (runs now, MainThread)", "the robot goes on"]
+    assert told[:2] == ["timer_callback returns, or raises (runs now, MainThread)", "the robot goes on"]

@@ -424,7 +424,7 @@ async def test_a_key_that_does_nothing_here_says_why() -> None:
     async with console() as (app, pilot):
         await press(pilot, "e", "e", "C")
         told = [note.message for note in app._notifications]
-        assert told[0] == "One shared group has no exercise: the lesson is done once it is explained."
+        assert told[0] == "One shared group has no exercise: it is done once it is predicted and explained."
         assert told[1].startswith("There is only one run so far"), "a repeated sentence is shown once"
         assert "e exercise" not in text_of(app)
 
