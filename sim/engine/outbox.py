@@ -28,9 +28,9 @@ _QUIET = 5
 _BATCH = 2048
 """Events of a full batch, which is sent at once."""
 _BOUND = 200_000
-"""Events that may wait on the real clock; further ones are dropped and counted."""
+"""Events, and lines, that may wait on the real clock; further ones are dropped and counted."""
 _LINES = 256
-"""Waiting events above which a thread that writes a line on the real clock is held up."""
+"""Waiting lines above which a thread that writes one more on the real clock is held up."""
 _PATIENCE = 1.0
 """Seconds for which a line is held up at most, as there may be no reader."""
 _TELL = 1.0
@@ -80,6 +80,8 @@ class Outbox:
         self._before_batch = before_batch
         self._heartbeat = heartbeat
         self._waiting: deque[AnyEvent] = deque()
+        self._lines: deque[AnyEvent] = deque()
+        """Those of them that are lines: many other events hold up no line, and drop none."""
         self._sending = _real_lock()
         self._closed = False
         self._lost = 0
@@ -102,21 +104,24 @@ class Outbox:
         if self._closed:
             return
         if not self._may_wait:
-            if len(self._waiting) >= _LINES and isinstance(event, Logged | Printed):
+            is_line = isinstance(event, Logged | Printed)
+            if is_line and len(self._lines) >= _LINES:
                 self._hold_up(event.t)
-            if len(self._waiting) >= _BOUND:
+            if len(self._lines if is_line else self._waiting) >= _BOUND:
                 self._lost += 1
                 return
+            if is_line:
+                self._lines.append(event)
         self._waiting.append(event)
         if self._may_wait and len(self._waiting) >= _BATCH:
             self.flush()
 
     def _hold_up(self, t: int) -> None:
-        """Block the calling thread until fewer events wait."""
+        """Block the calling thread until fewer lines wait."""
         began = _monotonic()
         with suppress(RuntimeError):  # another thread has released it
             self._bell.release()
-        while len(self._waiting) >= _LINES and _monotonic() < began + _PATIENCE and not self._closed:
+        while len(self._lines) >= _LINES and _monotonic() < began + _PATIENCE and not self._closed:
             _real_sleep(_LOOK)
         told, self._held_up = self._held_up >= _TELL, self._held_up + _monotonic() - began
         if self._held_up >= _TELL and not told:
@@ -134,6 +139,9 @@ class Outbox:
                 # After a pause of the reader, batches are no larger than usual.
                 batch = [self._waiting.popleft() for _ in range(min(waiting, _BATCH))]
                 waiting -= len(batch)
+                for each in batch:
+                    if self._lines and isinstance(each, Logged | Printed):
+                        self._lines.popleft()
                 self._send(batch)
 
     def _send(self, batch: list[AnyEvent]) -> None:

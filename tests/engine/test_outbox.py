@@ -66,6 +66,22 @@ def test_on_the_real_clock_a_thread_that_writes_too_many_lines_is_held_up_and_no
     ]
 
 
+def test_a_line_on_the_real_clock_is_neither_held_up_nor_lost_for_many_other_events(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(outbox, "_LINES", 10)
+    monkeypatch.setattr(outbox, "_BOUND", 20)
+    monkeypatch.setattr(outbox, "_TELL", 1e-9)
+    far, near = multiprocessing.Pipe()
+    box = Outbox(near, may_wait=False, before_batch=_nothing)
+    for moment in range(22):
+        box.record(TimePassed(moment))
+    box.record(_lines(22, 1)[0])
+    box.flush()
+    others = [TimePassed(moment) for moment in range(20)]
+    assert decode(far.recv_bytes()) == [*others, *_lines(22, 1), EventsLost(22, 2)]
+
+
 def test_nobody_who_reads_holds_up_a_line_for_long(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(outbox, "_LINES", 10)
     monkeypatch.setattr(outbox, "_BOUND", 12)
