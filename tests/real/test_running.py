@@ -533,3 +533,25 @@ def test_what_helps_a_run_leaves_nothing_in_shared_memory(monkeypatch: pytest.Mo
             for key, _ in selector.select():
                 key.data()
     assert left() == set()
+
+
+NOBODY_OFFERS = """
+from std_srvs.srv import Trigger
+
+
+class Tried(Node):
+    def __init__(self):
+        super().__init__("tried")
+        self.client = self.create_client(Trigger, "calibrate")
+        self.create_timer(0.3, self.tick)
+
+    async def tick(self):
+        await self.client.call_async(Trigger.Request())
+"""
+
+
+@pytest.mark.parametrize("ground", ["model", "ros2"])
+def test_a_call_of_a_service_that_nobody_offers_is_told(tmp_path: Path, ground: str) -> None:
+    timeline = programs.run(tmp_path, NOBODY_OFFERS, ground=ground, seconds=1.5).timeline
+    (found,) = (each for each in diagnose(timeline) if each.rule.id == "nobody-offers")
+    assert found.explained(timeline).what.startswith("tick called /calibrate, which nobody offered")

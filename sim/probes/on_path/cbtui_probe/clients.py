@@ -40,9 +40,12 @@ def watch_clients(recorder: Recorder, client_class: Any) -> None:
         here, service = recorder.here, client.service_name
         call, began, before = recorder.new_id(), now(), time.time_ns()
         with UNSEEN:
+            is_offered = client_class.service_is_ready(client)
             future = send(client, request)
         after = time.time_ns()
         recorder.put("called", began, call, service, here.entity, _text_of(request), before, after)
+        if not is_offered:
+            recorder.put("request_lost", now(), call, service)
         if here.blocks:
             here.blocks = call
             recorder.put("blocked", now(), call, recorder.thread(), here.entity, service)
