@@ -99,15 +99,3 @@ def line_of_caller() -> tuple[str, int]:
     """The file and line of the learner's code on the calling thread; "" and 0 if none of its frames is."""
     frame = own_frame(sys._getframe(1))
     return ("", 0) if frame is None else (frame.f_code.co_filename, frame.f_lineno)
-
-
-def raised_at(error: BaseException) -> tuple[str, int]:
-    """The file and line of the innermost frame of the learner's own code, else of the innermost frame."""
-    found = ("", 0)
-    trace = error.__traceback__
-    while trace is not None:
-        file = trace.tb_frame.f_code.co_filename
-        if is_own(trace.tb_frame) or not found[0]:
-            found = (file, trace.tb_lineno)
-        trace = trace.tb_next
-    return found

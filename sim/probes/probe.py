@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from sim.interpreter.exception_text import error_line
 from sim.interpreter.function_marks import sends_responses
 from sim.probes.on_path.cbtui_probe.naming import written_at
-from sim.probes.on_path.cbtui_probe.own_lines import awaiting_frames
-from sim.probes.own_code import call_into_ros, has_timeout, is_own, raised_at
+from sim.probes.on_path.cbtui_probe.own_lines import awaiting_frames, raised_at
+from sim.probes.own_code import call_into_ros, has_timeout, is_own
 from sim.probes.traced import MessageContents, TracedEntity
 from sim.probes.usage_warnings import UsageWarnings
 from sim.trace import events
@@ -238,7 +238,7 @@ class Probe:
 
     def callback_failed(self, entity: TracedEntity, error: BaseException) -> None:
         """Record the exception of a callback."""
-        file, line = raised_at(error)
+        file, line = raised_at(error, is_own)
         self._sink(
             events.CallbackFailed(
                 self._now(),
@@ -254,7 +254,9 @@ class Probe:
 
     def exception_surfaced(self, error: BaseException) -> None:
         """Record that a pool's executor raises a callback's exception on the calling thread."""
-        surfaced = events.ExceptionSurfaced(self._now(), self.thread(), error_line(error), *raised_at(error))
+        surfaced = events.ExceptionSurfaced(
+            self._now(), self.thread(), error_line(error), *raised_at(error, is_own)
+        )
         self._sink(surfaced)
 
     @property

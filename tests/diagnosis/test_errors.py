@@ -229,6 +229,32 @@ def test_what_asyncio_misses_in_a_callback_is_told_with_what_to_await_instead(th
     assert told.cure.startswith("await only futures of rclpy")
 
 
+FUTURE_OF_ASYNCIO = """
+import asyncio
+import rclpy
+rclpy.init()
+node = rclpy.create_node("n")
+done = asyncio.new_event_loop().create_future()
+
+async def tick():
+    await done
+
+node.create_timer(0.5, tick)
+rclpy.spin(node)
+"""
+
+
+@pytest.mark.parametrize("distro", ["jazzy", "jazzy@7.1.6"])
+def test_an_await_of_a_future_of_asyncio_is_told_at_its_line_with_what_to_await_instead(
+    distro: str, tmp_path: Path
+) -> None:
+    timeline = run_program(tmp_path, FUTURE_OF_ASYNCIO, 2.0, distro=distro).timeline
+    (told,) = (each.explained(timeline) for each in diagnose(timeline))
+    assert told.place is not None
+    assert told.place.first_line == 9
+    assert told.cure.startswith("await only futures of rclpy")
+
+
 @pytest.mark.parametrize(
     ("error", "why", "cure"),
     [
@@ -256,6 +282,17 @@ def test_what_asyncio_misses_in_a_callback_is_told_with_what_to_await_instead(th
             "AttributeError: 'NoneType' object has no attribute 'successful'",
             "the callback of add_on_set_parameters_callback() returned nothing; rclpy needs its answer",
             "end that callback with: return SetParametersResult(successful=True)",
+        ),
+        (
+            "RuntimeError: There is no current event loop in thread 'ThreadPoolExecutor-0_0'.",
+            "an executor of rclpy resumes coroutines itself, and runs no event loop of asyncio",
+            "await only futures of rclpy, such as that of call_async(), and several one after another; in "
+            "place of asyncio.sleep(), await a rclpy.task.Future that a timer completes",
+        ),
+        (
+            "RuntimeError: There is no current event loop in thread 'MainThread'.",
+            "an exception that no except clause takes ends the program",
+            "correct the line",
         ),
         (
             "AttributeError: property 'speed' of 'Motor' object has no setter",

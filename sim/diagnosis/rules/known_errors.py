@@ -47,10 +47,12 @@ _KNOWN = tuple(
             rf"write \1:=\2.0 in place of \1:=\2 {_WHERE}",
         ),
         (
-            r"RuntimeError: no running event loop",
+            r"RuntimeError: (?:no running event loop|await wasn't used with future"
+            r"|There is no current event loop in thread '(?!MainThread').*)"
+            r"|TypeError: Expected coroutine to yield a Future or None, got: .*",
             r"an executor of rclpy resumes coroutines itself, and runs no event loop of asyncio",
-            r"await only futures of rclpy, such as that of call_async(); in place of asyncio.sleep(), await "
-            r"a rclpy.task.Future that a timer completes",
+            r"await only futures of rclpy, such as that of call_async(), and several one after another; in "
+            r"place of asyncio.sleep(), await a rclpy.task.Future that a timer completes",
         ),
         (
             rf"AttributeError: (?:property|can't set attribute) '({_NODE_PROPERTIES})'"

@@ -10,7 +10,8 @@ from typing import Any
 
 from sim.engine.failures.failure import place_of
 from sim.interpreter.exception_text import error_line
-from sim.probes.own_code import raised_at
+from sim.probes.on_path.cbtui_probe.own_lines import raised_at
+from sim.probes.own_code import is_own
 from sim.trace.events import NoticeKind
 from sim.trace.events.fields import SourcePlace
 
@@ -34,7 +35,7 @@ def report_uncaught(tell: Tell, path: str, folder: str) -> None:
             tell(
                 f"{place}: {line}; {what_follows}",
                 line * (kind is not NoticeKind.OTHER),
-                raised_at(error),
+                raised_at(error, is_own),
                 kind,
             )
 

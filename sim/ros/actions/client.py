@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from itertools import count
 from typing import Any
-from weakref import ref
+from uuid import UUID, uuid5
+from weakref import WeakKeyDictionary, ref
 
+from sim.interfaces import message
 from sim.ros.actions.cancelling import uuid_of
-from sim.ros.actions.goal_ids import new_goal_id
 from sim.ros.actions.goal_states import TERMINAL, GoalState
 from sim.ros.actions.parts import ClientPart, SubscriptionPart
 from sim.ros.actions.waitable import ActionWaitable, await_or_execute
 from sim.ros.entities.client import Reply, wait_until_ready
+from sim.ros.middleware.host import Host
 from sim.ros.node.node import Node
 from sim.ros.qos.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
 from sim.ros.scheduling.callback_groups import CallbackGroup
@@ -20,6 +23,9 @@ from sim.ros.scheduling.task import Future
 __all__ = ["ActionClient", "ClientGoalHandle"]
 
 FeedbackCallback = Callable[[Any], Any]
+
+_SPACE = UUID("5e0c1ad2-3f87-4a35-8a3c-0d5a86d7c1f4")
+_numbers: WeakKeyDictionary[Host, Iterator[int]] = WeakKeyDictionary()
 
 
 class ClientGoalHandle:
@@ -157,7 +163,7 @@ class ActionClient(ActionWaitable):
         """
         if not isinstance(goal, self._action_type.Goal):
             raise TypeError(f"Expected {self._action_type.Goal}, got {type(goal)}")
-        goal_id = new_goal_id(self._host) if goal_uuid is None else goal_uuid
+        goal_id = _new_goal_id(self._host) if goal_uuid is None else goal_uuid
         request = self._action_type.Impl.SendGoalService.Request(goal_id=goal_id, goal=goal)
         with self._host.lock:
             if feedback_callback is not None:
@@ -262,3 +268,11 @@ class ActionClient(ActionWaitable):
 def _check_is_goal_handle(goal_handle: Any) -> None:
     if not isinstance(goal_handle, ClientGoalHandle):
         raise TypeError(f"Expected type ClientGoalHandle but received {type(goal_handle)}")
+
+
+def _new_goal_id(host: Host) -> Any:
+    """A new ``unique_identifier_msgs/msg/UUID``, unique on this host, the same in every virtual run."""
+    with host.lock:
+        number = next(_numbers.setdefault(host, count()))
+    made = uuid5(_SPACE, f"{host.clock.epoch} {number}")
+    return message("unique_identifier_msgs", "UUID")(uuid=list(made.bytes))

@@ -10,7 +10,7 @@ import weakref
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
-from .own_lines import awaiting_frames
+from .own_lines import awaiting_frames, raised_at
 from .recorder import now
 from .unseen import leave_out_probe
 
@@ -209,20 +209,15 @@ class Calls:
     def _fail(self, error: BaseException) -> None:
         """Record an exception of the callback, which is raised again."""
         recorder = self._recorder
-        place, exception = raised_at(error), type(error).__name__
+        place, exception = told_of(error), type(error).__name__
         recorder.put("callback_error", now(), self._entity.number, recorder.thread(), *place, exception)
         leave_out_probe(error)
 
 
-def raised_at(error: BaseException) -> tuple[str, str, int]:
-    """An exception's class and text, and file and line of the innermost frame of the program's own code."""
-    place, trace = ("", 0), error.__traceback__
-    while trace is not None:
-        if is_own(trace.tb_frame) or not place[0]:
-            place = (trace.tb_frame.f_code.co_filename, trace.tb_lineno)
-        trace = trace.tb_next
+def told_of(error: BaseException) -> tuple[str, str, int]:
+    """An exception's class and text, and where it was raised."""
     text = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-    return text, *place
+    return text, *raised_at(error, is_own)
 
 
 class _Steps:

@@ -9,7 +9,7 @@ from functools import wraps
 from threading import get_ident
 from typing import TYPE_CHECKING, Any
 
-from .callbacks import is_own, raised_at
+from .callbacks import is_own, told_of
 from .recorder import now
 from .states import STATE, state_of
 from .unseen import UNSEEN, leave_out_probe
@@ -154,7 +154,7 @@ class Executors:
             try:
                 spin_once(*args, **kwargs)
             except Exception as error:
-                recorder.put("exception_surfaced", now(), recorder.thread(), *raised_at(error))
+                recorder.put("exception_surfaced", now(), recorder.thread(), *told_of(error))
                 leave_out_probe(error)
                 raise
 

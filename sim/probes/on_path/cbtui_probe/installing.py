@@ -10,7 +10,7 @@ from traceback import walk_tb
 from typing import Any
 
 from . import CHANGES
-from .callbacks import is_own, raised_at
+from .callbacks import is_own, told_of
 from .clients import watch_clients, watch_services
 from .entities import Entities
 from .executors import Executors
@@ -110,7 +110,7 @@ def _watch_end(recorder: Recorder, executors: Executors) -> None:
             if CHANGES in os.environ:  # that is how a run of the console's own ends
                 return
         else:
-            text, *place = raised_at(error)
+            text, *place = told_of(error)
             if isinstance(error, SyntaxError) and Path(error.filename or "").is_file():
                 text, place = f"{type(error).__name__}: {error.msg}", [error.filename, error.lineno or 0]
             *place, advice = culprit_of(error, is_own) or (*place, "")
@@ -129,7 +129,7 @@ def _watch_threads(recorder: Recorder, shut_down: type[Exception]) -> None:
         error = failed.exc_value
         if isinstance(error, Exception) and not isinstance(error, shut_down):
             leave_out_probe(error)
-            text, file, line = raised_at(error)
+            text, file, line = told_of(error)
             if not any(is_own(frame) for frame, _ in walk_tb(error.__traceback__)):
                 file, line = "", 0
             where = f"{Path(file).name}:{line}: " if file else ""

@@ -33,10 +33,20 @@ def awaiting_frames(coroutine: Any, is_own: IsOwn) -> tuple[tuple[str, str, int]
     return tuple(found)
 
 
+def raised_at(error: BaseException, is_own: IsOwn) -> tuple[str, int]:
+    """The file and line of the innermost own frame of an exception, else of its outermost frame."""
+    place = ("", 0)
+    for frame, line in walk_tb(error.__traceback__):
+        if is_own(frame) or not place[0]:
+            place = (frame.f_code.co_filename, line)
+    return place
+
+
 def culprit_of(error: BaseException, is_own: IsOwn) -> tuple[str, int, str] | None:
     """File and line of the definition that made rclpy raise an exception, and advice; None for another cause.
 
-    That is a callback with wrong parameters, or what hides a name of ``Node`` that rclpy uses.
+    That is a callback with wrong parameters, what hides a name of ``Node`` that rclpy uses, or an await of
+    what is no future of rclpy.
     """
     frames = list(walk_tb(error.__traceback__))
     if not frames or not isinstance(error, (TypeError, AttributeError, RuntimeError, ValueError)):
@@ -48,6 +58,10 @@ def culprit_of(error: BaseException, is_own: IsOwn) -> tuple[str, int, str] | No
         return next(unfit, None)
     if is_own(frames[-1][0]):
         return _hiding_attribute(error, *frames[-1])
+    if str(error).startswith("Expected coroutine to yield"):
+        task = frames[-1][0].f_locals.get("self")
+        awaiting = awaiting_frames(getattr(task, "_handler", None), is_own)
+        return (awaiting[-1][0], awaiting[-1][2], "") if awaiting else None
     return _rejected_callback(error, frames[-1][0], own[-1:]) or _hiding(frames, is_own)
 
 
