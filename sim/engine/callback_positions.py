@@ -13,7 +13,7 @@ from typing import TypeAlias
 from sim.clock import RunClock
 from sim.engine.waited_lock import WaitedLock, decorated, first_line, taken_lock, waited_lock
 from sim.interpreter.function_marks import asks_time, calls_the_program, notes_begin, waits_for_keyboard
-from sim.probes.own_code import is_library, is_own, outwards
+from sim.probes.own_code import called_by_own, is_library, is_own, outwards
 from sim.probes.probe import Probe, RunningCallback
 from sim.trace.events import AnyEvent, CallbackAt, Doing, EntityId, ThreadId
 from sim.trace.events.fields import SourcePlace
@@ -83,7 +83,7 @@ class CallbackPositions:
         if callback is None:
             return
         self._went_on[ident] = callback, now
-        lock = taken_lock(takewhile(lambda frame: not is_own(frame), outwards(top)))
+        lock = taken_lock(called_by_own(top))
         if lock is not None and isinstance(lock.taken_during, tuple) and lock.taken_during[0]:
             running[lock.holder_ident] = RunningCallback(*lock.taken_during)  # which may be over by now
         known = self._latest.get(ident)
@@ -144,15 +144,14 @@ def position_of(
     ident = None if ends is None else ends(inside[-1])
     if ident is not None:
         lock = WaitedLock(threads.get(ident, 0))
-        there = list(takewhile(lambda frame: not is_own(frame), outwards(sys._current_frames().get(ident))))
+        there = called_by_own(sys._current_frames().get(ident))
         timeout = timeout or (_timeout(there[-1]) if there else 0)
     return (doing, call, frames, next(filter(None, loops), ("", 0)), lock), timeout
 
 
 def wait_began(top: FrameType | None) -> int:
     """Return since when a thread waits in what the program has called, if it has noted that, else 0."""
-    inside = takewhile(lambda frame: not is_own(frame), outwards(top))
-    return next((frame.f_locals.get("since", 0) for frame in inside if frame in notes_begin), 0)
+    return next((each.f_locals.get("since", 0) for each in called_by_own(top) if each in notes_begin), 0)
 
 
 def _is_written(frame: FrameType) -> bool:

@@ -30,7 +30,7 @@ _BATCH = 2048
 _BOUND = 200_000
 """Events, and lines, that may wait on the real clock; further ones are dropped and counted."""
 _LINES = 256
-"""Waiting lines above which a thread that writes one more on the real clock is held up."""
+"""Waiting lines above which a thread that writes a line on the real clock is held up."""
 _PATIENCE = 1.0
 """Seconds for which a line is held up at most, as there may be no reader."""
 _TELL = 1.0
@@ -81,7 +81,7 @@ class Outbox:
         self._heartbeat = heartbeat
         self._waiting: deque[AnyEvent] = deque()
         self._lines: deque[AnyEvent] = deque()
-        """Those of them that are lines: many other events hold up no line, and drop none."""
+        """The lines among them."""
         self._sending = _real_lock()
         self._closed = False
         self._lost = 0

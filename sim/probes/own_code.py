@@ -6,6 +6,7 @@ import dis
 import sys
 import sysconfig
 from collections.abc import Iterator
+from itertools import takewhile
 from pathlib import Path
 from types import FrameType
 
@@ -43,6 +44,11 @@ def own_frame(frame: FrameType | None) -> FrameType | None:
     """The innermost frame of a file of the learner's own, from a frame outwards."""
     own = filter(is_own, outwards(frame))
     return next((each for each in own if not each.f_code.co_filename.startswith("<")), None)
+
+
+def called_by_own(top: FrameType | None) -> list[FrameType]:
+    """The frames that the innermost one of the learner's own has called."""
+    return list(takewhile(lambda frame: not is_own(frame), outwards(top)))
 
 
 def place_of(frame: FrameType | None) -> str:

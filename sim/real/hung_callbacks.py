@@ -5,9 +5,8 @@ from collections.abc import Iterator
 import msgspec
 
 from sim.engine.callback_positions import LOCK
-from sim.engine.watchdogs.wait_descriptions import advice_on_job
+from sim.engine.watchdogs.wait_descriptions import advice_on_job, hung_notice
 from sim.probes.own_code import place_text
-from sim.quantities.durations import timestamp
 from sim.trace.events import (
     AnyEvent,
     CallbackAt,
@@ -16,9 +15,7 @@ from sim.trace.events import (
     Doing,
     Nanoseconds,
     Notice,
-    NoticeKind,
     RunEnding,
-    Severity,
     ThreadId,
 )
 
@@ -84,19 +81,5 @@ def _where(at: CallbackAt) -> tuple[object, ...]:
 
 
 def _notice(at: CallbackAt, t: Nanoseconds, advice: str) -> Notice:
-    problem = f"has not come back since {timestamp(at.t)}"
-    file, function, line = at.frames[-1]
-    what = f"waits for {at.lock or 'a lock'}" if at.call == LOCK else f"waits in {at.call}()"
-    where = f"{at.frames[0][1]} {problem} ({place_text(file, function, line)})"
-    text = f"{where}: it {what}; its thread serves nothing else meanwhile"
-    text = "; ".join(filter(None, (text, advice)))
-    return Notice(
-        t,
-        Severity.WARN,
-        text,
-        at.entity,
-        kind=NoticeKind.NO_PROGRESS,
-        problem=problem,
-        advice=advice,
-        thread=at.thread,
-    )
+    where = at.frames[0][1], place_text(*at.frames[-1]), at.call, at.lock
+    return hung_notice(t, at.entity, at.thread, at.t, where, advice)

@@ -4,20 +4,18 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
-from itertools import takewhile
 from operator import is_
 from types import FrameType
 from typing import NamedTuple
 
 from sim.clock import RunClock
 from sim.engine.callback_positions import LOCK, position_of, wait_began
-from sim.engine.waited_lock import decorated, taken_lock
-from sim.engine.watchdogs.wait_descriptions import advice_on_pools
+from sim.engine.waited_lock import decorated, taken_lock, taking
+from sim.engine.watchdogs.wait_descriptions import ONE_ORDER, WaitProblem, advice_on_pools, hung_notice
 from sim.interpreter.function_marks import calls_the_program, waits_for_keyboard, waits_for_time
-from sim.probes.own_code import is_own, outwards, place_of
+from sim.probes.own_code import called_by_own, is_own, outwards, own_frame, place_of, place_text
 from sim.probes.probe import RunningCallback
-from sim.quantities.durations import timestamp
-from sim.trace.events import AnyEvent, Doing, Notice, NoticeKind, Severity
+from sim.trace.events import AnyEvent, Doing, Notice
 
 # Kept from before a clock replaces them.
 _Thread = threading.Thread
@@ -90,23 +88,15 @@ class HungCallbacks:
             seen[thread] = hung = self._seen.get(thread, _HungCall()).seen_again(sample)
             if hung.looks == _PATIENCE:
                 self._look_at_positions()
-                self._record(_notice(hung, call, top, now))
+                self._record(_deadlock(thread, running, tops, now) or _notice(hung, call, top, now))
         self._seen = seen
 
 
-def _notice(hung: _HungCall, call: FrameType, top: FrameType, now: int) -> Notice:
-    problem, advice = f"has not come back since {timestamp(hung.since)}", advice_on_pools()
-    text = "; ".join(filter(None, (_sentence(problem, call, top), advice)))
-    return Notice(
-        now,
-        Severity.WARN,
-        text,
-        hung.callback.entity,
-        kind=NoticeKind.NO_PROGRESS,
-        problem=problem,
-        advice=advice,
-        thread=hung.callback.thread,
-    )
+def _notice(hung: _HungCall, frame: FrameType, top: FrameType, now: int) -> Notice:
+    function, found, (entity, thread, _) = decorated(frame), position_of(top), hung.callback
+    call, lock = (found[0][1], found[0][4].lock) if found and found[0][0] is Doing.WAITS else ("", "")
+    at = frame.f_code.co_name if function is None else function.__name__, place_of(top), call, lock
+    return hung_notice(now, entity, thread, hung.since, at, advice_on_pools())
 
 
 def _hung_call(top: FrameType) -> FrameType | None:
@@ -137,8 +127,7 @@ def _takings(top: FrameType, tops: Mapping[int, FrameType]) -> list[object] | No
         doing, call, _, loop, _ = found[0]
         if takings and doing is Doing.SLEEPS and not loop[0]:
             return None
-        inside = takewhile(lambda frame: not is_own(frame), outwards(at))
-        lock = taken_lock(inside) if call == LOCK else None
+        lock = taken_lock(called_by_own(at)) if call == LOCK else None
         if lock is None or any(each is lock.taken_at for each in takings):
             break
         takings.append(lock.taken_at)
@@ -146,14 +135,22 @@ def _takings(top: FrameType, tops: Mapping[int, FrameType]) -> list[object] | No
     return takings
 
 
-def _sentence(problem: str, call: FrameType, top: FrameType) -> str:
-    what, function, found = (
-        "computes, or waits for something that does not come",
-        decorated(call),
-        position_of(top),
-    )
-    if found is not None and found[0][0] is Doing.WAITS:
-        _, inside, _, _, lock = found[0]
-        what = f"waits for {lock.lock or 'a lock'}" if inside == LOCK else f"waits in {inside}()"
-    name = call.f_code.co_name if function is None else function.__name__
-    return f"{name} {problem} ({place_of(top)}): it {what}; its thread serves nothing else meanwhile"
+def _deadlock(
+    first: int, running: Mapping[int, RunningCallback], tops: Mapping[int, FrameType], now: int
+) -> Notice | None:
+    """Tell of a cycle of waits for locks; None without one, or if all in it are callbacks."""
+    names = {each.ident: each.name for each in threading.enumerate()}
+    clauses, ident = dict[int, str](), first
+    while ident not in clauses and (found := position_of(top := tops.get(ident))) is not None:
+        lock = taken_lock(called_by_own(top)) if found[0][1] == LOCK and not found[1] else None
+        if lock is None:
+            return None
+        clauses[ident] = (
+            f"{names.get(ident)} ({place_of(top)}) waits for {found[0][4].lock or 'a lock'}, "
+            f"which {names.get(lock.holder_ident)} took at {place_text(*taking(lock, own_frame(top)))}"
+        )
+        ident = lock.holder_ident
+    if ident != first or clauses.keys() <= running.keys():
+        return None
+    problem = WaitProblem(", and ".join(clauses.values()), ONE_ORDER, is_deadlock=True)
+    return problem.notice(now, running.get(first, _NONE).entity)

@@ -5,19 +5,19 @@ import threading
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import takewhile
-from types import FrameType
 
 from sim.clock.virtual_threads import HeldResource, VirtualThread
-from sim.engine.callback_positions import JOB
+from sim.engine.callback_positions import JOB, LOCK
 from sim.engine.waited_lock import decorated, first_line, name_at, taking
 from sim.engine.watchdogs.thread_positions import place_of
 from sim.interpreter.function_marks import calls_the_program
 from sim.probes import own_code
-from sim.probes.own_code import is_own, outwards, own_frame, place_text
+from sim.probes.own_code import called_by_own, outwards, own_frame, place_text
 from sim.quantities.durations import timestamp
-from sim.trace.events import EntityId, Notice, NoticeKind, Severity, SourcePlace
+from sim.trace.events import EntityId, Notice, NoticeKind, Severity, SourcePlace, ThreadId
 from sim.trace.model import RESULT
 
+ONE_ORDER = "take locks in the same order everywhere"
 _AWAITS = threading.Condition.wait.__code__
 """The function in which every wait of Python's library ends that is not for a lock."""
 
@@ -49,7 +49,7 @@ def deadlock_of_cycle(cycle: Sequence[VirtualThread]) -> WaitProblem:
     if any(_waits_for_end(each) for each in cycle):
         advice = "let go of locks before you wait for a thread to end"
     elif len(cycle) > 1:
-        advice = "take locks in the same order everywhere"
+        advice = ONE_ORDER
     elif _is_left(cycle[0].wants):
         advice = "let go of it on every way out, by with, and before an await"
     else:
@@ -66,6 +66,19 @@ def deadlock_of_last(thread: VirtualThread) -> WaitProblem:
 def long_wait(thread: VirtualThread, since: int) -> WaitProblem:
     """Describe a thread that has waited since a moment for what another thread might still do."""
     return WaitProblem(f"{waits(thread)}, since {timestamp(since)}", _cure(thread), is_deadlock=False)
+
+
+def hung_notice(
+    t: int, entity: EntityId, thread: ThreadId, since: int, at: tuple[str, str, str, str], advice: str
+) -> Notice:
+    """Return the notice of a call that hangs."""
+    problem, (function, place, call, lock) = f"has not come back since {timestamp(since)}", at
+    what = f"waits in {call}()" if call else "computes, or waits for something that does not come"
+    if call == LOCK:
+        what = f"waits for {lock or 'a lock'}"
+    text = f"{function} {problem} ({place}): it {what}; its thread serves nothing else meanwhile"
+    text, kind = "; ".join(filter(None, (text, advice))), NoticeKind.NO_PROGRESS
+    return Notice(t, Severity.WARN, text, entity, False, kind, problem, advice, thread=thread)
 
 
 def advice_on_pools() -> str:
@@ -101,8 +114,9 @@ def _what(thread: VirtualThread) -> str:
         return "waits for a lock"
     if lock.taken_at is None:
         return f"waits for {lock.holder.name} to end"
-    own = own_frame(sys._current_frames().get(thread.ident))
-    name = "" if own is None else name_at(own, [frame.f_locals.get("self") for frame in _library(thread)])
+    top = sys._current_frames().get(thread.ident)
+    own, inside = own_frame(top), called_by_own(top)
+    name = "" if own is None else name_at(own, [frame.f_locals.get("self") for frame in inside])
     who = "it took itself" if lock.holder is thread else f"{lock.holder.name} took"
     more = " and did not release" if _is_left(lock) else ""
     return (
@@ -128,14 +142,8 @@ def _signal(thread: VirtualThread) -> str:
     """Return the library function in which a thread waits for another: ``Event.wait``; "" for a lock."""
     if thread.wants is None or thread.wants.holder is not thread:
         return ""
-    library = [frame.f_code for frame in _library(thread)]
+    library = [frame.f_code for frame in called_by_own(sys._current_frames().get(thread.ident))]
     return library[-1].co_qualname if _AWAITS in library else ""
-
-
-def _library(thread: VirtualThread) -> list[FrameType]:
-    """Return the frames that a thread's innermost frame of the program's own has called."""
-    frames = outwards(sys._current_frames().get(thread.ident))
-    return list(takewhile(lambda frame: not is_own(frame), frames))
 
 
 def _cure(thread: VirtualThread) -> str:
