@@ -1,6 +1,6 @@
 """Searches a run for deadlocks: at which moments the wait-for graph is asked, and what calls itself."""
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 
 from sim.diagnosis.lasting_waits import SETTLES, lasting_awaits, stands
 from sim.diagnosis.timeline_view import TimelineView
@@ -60,12 +60,13 @@ def _awaits(view: TimelineView) -> bool:
     return any(any(lasting_awaits(each, view.end, view.timeline)) for each in holders if each in suspended)
 
 
-def recursive_service(stuck: Collection[EntityId], until: Nanoseconds, timeline: Timeline) -> EntityId:
-    """Return the one of some stuck callbacks that is a service's and waits in a call of it; 0 for none."""
-    services = {
-        each.id: each.name
-        for each in map(timeline.entities.__getitem__, stuck)
-        if each.kind is EntityKind.SERVICE
-    }
+def recursive_services(subject: EntityId, until: Nanoseconds, timeline: Timeline) -> Sequence[EntityId]:
+    """Return the services of which each waits in a call of the next, up to a stuck one; empty if none do."""
+    known = timeline.entities.values()
+    services = {each.name: each.id for each in known if each.kind is EntityKind.SERVICE}
     waits = timeline.moment(until - 1).blocked.values()
-    return next((each.entity for each in waits if services.get(each.entity) == each.service), 0)
+    asked = {each.entity: services.get(each.service, 0) for each in waits}
+    ring = list[EntityId]()
+    while (following := asked.get((ring or [subject])[-1], 0)) not in (0, *ring):
+        ring.append(following)
+    return ring if subject in ring else ()

@@ -210,6 +210,43 @@ def test_services_that_call_each_other_in_a_circle_are_spelt_out() -> None:
     assert run.one("self-made-deadlock").ring[:4] == ("serve_a", "/b", "serve_b", "/a")
 
 
+@pytest.mark.parametrize("kind", [MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup])
+@pytest.mark.parametrize(("first", "last"), [("a", "b"), ("b", "a")])
+def test_a_service_that_is_called_by_what_it_calls_is_not_cured_by_a_group_of_its_own(
+    first: str, last: str, kind: Group
+) -> None:
+    """``a`` and ``b`` call each other, all in groups of their own; the first one is called from outside."""
+
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        clients = {name: node.create_client(SetBool, name, callback_group=kind()) for name in "ab"}
+
+        def a(_: object, response: object) -> object:
+            simulation.sleep(0.01)
+            clients["b"].call(SetBool.Request())
+            return response
+
+        def b(_: object, response: object) -> object:
+            simulation.sleep(0.01)
+            clients["a"].call(SetBool.Request())
+            return response
+
+        node.create_service(SetBool, "a", a, callback_group=kind())
+        node.create_service(SetBool, "b", b, callback_group=kind())
+        once(node, 1.0, lambda: clients[first].call(SetBool.Request()), kind())
+        spin(node, 8)
+
+    run = diagnosed(program)
+    (told,) = (each.explained(run.timeline) for each in run.findings)
+    assert " is called from within itself, by way of " in told.why
+    is_kept_out = kind is MutuallyExclusiveCallbackGroup
+    if is_kept_out:
+        assert told.why.startswith(f"/{first} is called from within itself, by way of {last}, ")
+        assert told.cure.startswith(f"let {last} call {first} as a function; or, ")
+    assert (f"give {first} and {last} a ReentrantCallbackGroup each" in told.cure) == is_kept_out
+    assert not told.remedies
+
+
 def test_a_service_in_the_callers_group_is_a_deadlock() -> None:
     def program(simulation: Simulation) -> None:
         node = Node("n")

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from sim.diagnosis.cures import Remedy
-from sim.diagnosis.deadlock_search import deadlocks, recursive_service
+from sim.diagnosis.deadlock_search import deadlocks, recursive_services
 from sim.diagnosis.edits.locks import (
     keeps_lock,
     let_go_during_wait,
@@ -37,6 +37,7 @@ from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.waiters import StuckCallback
 from sim.diagnosis.words import (
     awaiting,
+    listed,
     must_answer,
     often,
     thread_of,
@@ -323,10 +324,17 @@ def _lines_of(entities: Sequence[EntityId], found: Finding, timeline: Timeline) 
 def _explanation(
     found: Finding, why: str, cure: str, remedies: tuple[Remedy, ...], timeline: Timeline
 ) -> Explanation:
-    if entity := recursive_service(found.stuck, found.until, timeline):
-        name, remedies = who(entity, timeline), ()
-        why = f"{name} calls its own service, and each such call keeps a thread until the next one is over"
-        cure = f"let {name} call itself as a function; no number of threads is enough for every depth"
+    if ring := recursive_services(found.subject, found.until, timeline):
+        (name, *others), remedies = [who(each, timeline) for each in ring], ()
+        why, cure = f"{name} calls its own service", f"let {name} call itself as a function"
+        if others:
+            service, every = timeline.entities[ring[0]].name, listed([name, *others])
+            why = f"{service} is called from within itself, by way of {listed(others)}"
+            cure = f"let {others[-1]} call {name} as a function"
+            if found.keeper:
+                cure += f"; or, if the calls end by themselves, give {every} a ReentrantCallbackGroup each"
+        why += ", and each such call keeps a thread until the next one is over"
+        cure += "; no number of threads is enough for every depth"
     subject, wanted, lasts = who(found.subject, timeline), found.ring[1], found.until >= timeline.end
     until = until_when(found.ends, timeline)
     if found.about in _TELL_WHO_WAITS:
