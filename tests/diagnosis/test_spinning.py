@@ -144,6 +144,22 @@ def test_a_release_that_refuses_no_second_spin_is_not_said_to(ask: str, what: st
     assert found.explained(run.timeline).what == what
 
 
+@pytest.mark.parametrize(
+    "ask",
+    [
+        "while rclpy.ok(): rclpy.spin_once(self, timeout_sec=0.1)",
+        "rclpy.spin_once(self, timeout_sec=0.7)",
+    ],
+    ids=["stays in its loop", "takes longer than its period"],
+)
+def test_how_long_a_callback_takes_that_spins_its_executor_is_no_problem_beside_that(
+    ask: str, tmp_path: Path
+) -> None:
+    text = program(ask).replace("future = self.client.call_async(SetBool.Request())", "pass")
+    run = run_program(tmp_path, text, 4.0, distro="jazzy@7.1.6")
+    assert [each.rule.id for each in diagnose(run.timeline)] == ["nested-spin"]
+
+
 def test_a_request_that_a_spinning_callback_keeps_out_is_a_ring_although_others_run(tmp_path: Path) -> None:
     apart = "self.create_timer(0.7, lambda: None, callback_group=MutuallyExclusiveCallbackGroup())"
     alone = "self.create_timer(0.5, self.tick)"

@@ -192,7 +192,7 @@ class StaysInLoop(Rule):
         told = {notice.entity for notice in on_waits(view.timeline)}
         for span in view.now.running.values():
             since = _in_loop_since(span, view, self.threshold)
-            if since is not None and span.entity not in told:
+            if since is not None and span.entity not in {*told, *view.nested_spinners}:
                 stuck = frozenset([span.entity])
                 yield Finding(
                     self, since, view.end, span.entity, span.entity, stuck=stuck, size=view.end - since

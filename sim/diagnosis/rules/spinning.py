@@ -58,7 +58,7 @@ class NestedSpin(Rule):
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each attempt, and one that cannot end as long as it lasts."""
-        spinning = {each.entity for each in view.positions if _SPIN in each.call and _lasts(each, view)}
+        spinning = {each.entity for each in view.positions if "spin" in each.call and _lasts(each, view)}
         latest = {each.entity: each for each in view.timeline.spin_clashes}
         for clash in reversed(view.timeline.spin_clashes):
             is_latest = latest[clash.entity] is clash
@@ -159,7 +159,7 @@ class SpinInConstructor(Rule):
         """Yield it once it has lasted."""
         for at in view.timeline.programs_at(view.end):
             in_constructor = any(function == "__init__" for _, function, _ in at.frames)
-            if in_constructor and _SPIN in at.call and view.end - at.t >= self.threshold:
+            if in_constructor and "spin" in at.call and view.end - at.t >= self.threshold:
                 yield Finding(self, at.t, view.end, detail=at.call, event=at)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
@@ -239,8 +239,6 @@ class AsyncioStarved(Rule):
 _NEVER = "{0}() runs callbacks until the program ends; what is made after it never exists"
 _LOOKED_AT = 100
 """Calls that are looked at for the program's last one."""
-_SPIN = "spin"
-"""A part of the names of all functions that spin."""
 
 
 def _lasts(position: Position, view: TimelineView) -> bool:

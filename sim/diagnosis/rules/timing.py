@@ -129,7 +129,7 @@ class OverrunTimer(Rule):
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each call or await longer than the period, unless the next call overlaps it."""
         for entity in view.entities(EntityKind.TIMER):
-            if entity.period == 0:
+            if entity.period == 0 or entity.id in view.nested_spinners:
                 continue
             for each in _awaits(entity, view):
                 if (length := each.end - each.start) > entity.period:
