@@ -34,7 +34,8 @@ def let_complete(place: CodeLocation | None) -> str:
 
 
 def awaits_in_vain_since(entity: EntityId, window: Window, timeline: Timeline) -> Nanoseconds | None:
-    """When a callback began an await that lasts, of a future that is not the reply to a call of its."""
-    last = timeline.positions_of(entity, Window(window.start, window.end + 1))[-1:]
+    """When a callback began an await that lasts, by a window's middle, of no reply to its calls."""
+    middle = (window.start + window.end) // 2
+    last = timeline.positions_of(entity, Window(middle, middle + 1))[-1:]
     asks = any(each.caller == entity for each in timeline.moment(window.end).pending_calls)
     return next((each.start for each in last if each.call == AWAIT and each.end is None and not asks), None)

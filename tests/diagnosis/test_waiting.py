@@ -511,3 +511,24 @@ def test_a_task_that_waits_for_what_the_only_thread_would_run_is_said_to(tmp_pat
     (told,) = (each.explained(timeline) for each in diagnose(timeline) if each.rule.id == "no-free-worker")
     assert told.why.endswith(", and answered waits for what beat sets")
     assert told.cure == "spin with MultiThreadedExecutor(num_threads=2)"
+
+
+def test_a_callback_that_awaits_what_came_often_does_not_await_in_vain(tmp_path: Path) -> None:
+    source = (
+        "import time, rclpy",
+        "from rclpy.node import Node",
+        "class Worker(Node):",
+        "    def __init__(self):",
+        "        super().__init__('worker')",
+        "        self.create_timer(1.0, self.go)",
+        "        self.create_timer(0.5, self.beat)",
+        "    def work(self): time.sleep(3.0)",
+        "    async def go(self): await self.executor.create_task(self.work)",
+        "    def beat(self): pass",
+        "rclpy.init()",
+        "rclpy.spin(Worker())",
+    )
+    timeline = run_program(tmp_path, "\n".join(source), 9.2).timeline
+    (told,) = (each.explained(timeline) for each in diagnose(timeline) if each.rule.id == "group-starvation")
+    assert told.what.endswith(" s: group A was held by go")
+    assert "a callback group of its own, and spin with MultiThreadedExecutor(num_threads=2)" in told.cure
