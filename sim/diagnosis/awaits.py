@@ -6,7 +6,7 @@ from sim.diagnosis.edits.flags import asked_at, awaited_at, event_setters, never
 from sim.diagnosis.rule import CodeLocation
 from sim.diagnosis.words import listed
 from sim.quantities.durations import timestamp
-from sim.trace.events import EntityId
+from sim.trace.events import EntityId, EntityKind
 from sim.trace.model import AWAIT, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
@@ -39,3 +39,19 @@ def awaits_in_vain_since(entity: EntityId, window: Window, timeline: Timeline) -
     last = timeline.positions_of(entity, Window(middle, middle + 1))[-1:]
     asks = any(each.caller == entity for each in timeline.moment(window.end).pending_calls)
     return next((each.start for each in last if each.call == AWAIT and each.end is None and not asks), None)
+
+
+def waits_for_no_reply(entity: EntityId, timeline: Timeline) -> bool:
+    """Whether a callback waits for the reply of a service whose callback ended without one."""
+    services = [each for each in timeline.entities.values() if each.kind is EntityKind.SERVICE]
+    for call in timeline.moment(timeline.end).pending_calls:
+        until = Window(call.sent, timeline.end + 1)
+        served = (
+            span
+            for each in services
+            if each.name == call.service
+            for span in timeline.spans_of(each.id, until)
+        )
+        if call.caller == entity and any(span.message == call.id and span.error for span in served):
+            return True
+    return False

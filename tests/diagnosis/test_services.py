@@ -292,3 +292,36 @@ def test_waits_for_a_service_that_came_later_are_well(tmp_path: Path) -> None:
     waiting = run_to_end(program_setup(path, 4.6)).timeline
     assert [each.weight_in(waiting).value for each in diagnose(waiting)] == ["remark"]
     assert not diagnose(run_to_end(program_setup(path, 6.0)).timeline)
+
+
+NO_RESPONSE = """
+import rclpy
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import MultiThreadedExecutor
+from std_srvs.srv import Trigger
+
+def work(request, response):
+    pass
+
+def ask():
+    client.call(Trigger.Request())
+
+rclpy.init()
+node = rclpy.create_node("lazy")
+group = ReentrantCallbackGroup()
+node.create_service(Trigger, "work", work, callback_group=group)
+client = node.create_client(Trigger, "work", callback_group=group)
+node.create_timer(1.0, ask, callback_group=group)
+executor = MultiThreadedExecutor(4)
+executor.add_node(node)
+while rclpy.ok():
+    try:
+        executor.spin()
+    except TypeError:
+        pass
+"""
+
+
+def test_what_comes_of_a_reply_that_does_not_come_is_not_told_beside_its_cause(tmp_path: Path) -> None:
+    timeline = run_program(tmp_path, NO_RESPONSE, 3.5).timeline
+    assert [each.rule.id for each in diagnose(timeline)] == ["unreturned-response"]

@@ -555,3 +555,12 @@ def test_a_call_of_a_service_that_nobody_offers_is_told(tmp_path: Path, ground: 
     timeline = programs.run(tmp_path, NOBODY_OFFERS, ground=ground, seconds=1.5).timeline
     (found,) = (each for each in diagnose(timeline) if each.rule.id == "nobody-offers")
     assert found.explained(timeline).what.startswith("tick called /calibrate, which nobody offered")
+
+
+@pytest.mark.parametrize("ground", ["model", "ros2"])
+def test_a_service_that_returns_no_response_is_told_alone_though_it_ends_the_program(ground: str) -> None:
+    setup = program_setup(BEGINNERS / "no_response.py", 3.0)
+    if ground == "ros2":
+        setup = msgspec.structs.replace(setup, clock="real", real=RealRos())
+    timeline = run_to_end(setup).timeline
+    assert [each.rule.id for each in diagnose(timeline)] == ["unreturned-response"]

@@ -42,13 +42,17 @@ class ProgramRaised(Rule):
         if not ends:
             return
         clashes = {(clash.file, clash.line) for clash in view.timeline.spin_clashes}
-        last = (span for each in view.entities(EntityKind.SERVICE) for span in view.spans(each.id)[-1:])
+        last = [span for each in view.entities(EntityKind.SERVICE) for span in view.spans(each.id)[-1:]]
         unreturned = {span.error for span in last if span.no_response}
+        is_silent = any(span.end is not None and span.message in view.unanswered for span in last)
         latest = [span for each in view.entities() for span in view.spans(each.id)[-1:] if span.error]
         for ended in ends:
             if tuple(ended.place) in clashes or ended.error in unreturned:
                 continue
             raised = next((span for span in latest if span.error == ended.error), None)
+            is_of_response = ended.error == "TypeError" or "_Response'>, got" in (ended.error or "")
+            if raised is None and is_of_response and is_silent:
+                continue  # real rclpy raises it when the service's callback is over, 7.1.6 without a text
             at = ended.t if raised is None or raised.end is None else raised.end  # others may have gone on
             worker = raised.thread if raised and is_worker(raised.thread, view.timeline) else 0
             subject = raised.entity if raised else 0
@@ -258,7 +262,9 @@ class ExceptionSwallowed(Rule):
             return
         for entity in view.entities():
             for span in view.spans(entity.id):
-                if span.error and span.end is not None and is_worker(span.thread, view.timeline):
+                if not span.error or span.no_response or span.end is None:
+                    continue
+                if is_worker(span.thread, view.timeline):
                     yield Finding(
                         self,
                         span.start,

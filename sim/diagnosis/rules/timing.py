@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
-from sim.diagnosis.awaits import awaits_in_vain, awaits_in_vain_since, let_complete
+from sim.diagnosis.awaits import awaits_in_vain, awaits_in_vain_since, let_complete, waits_for_no_reply
 from sim.diagnosis.edits.profiles import set_depth
 from sim.diagnosis.edits.replies import go_on_in_done_callback
 from sim.diagnosis.edits.shared_data import guards_what_it_changes
@@ -99,9 +99,12 @@ class OverlappingCallback(Rule):
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
         """A problem where timers or subscriptions, hardly meant to overlap, wait for no lock meanwhile.
 
-        Irrelevant where the source shows a lock around all that matters, for which no call waits.
+        Irrelevant where the source shows a lock around all that matters, for which no call waits, and where a
+        call waits for a reply that does not come.
         """
         entity = entity_of(found, timeline)
+        if waits_for_no_reply(entity.id, timeline):
+            return None
         if _lock_line(found, timeline) is not None:
             return Weight.REMARK
         if guards_what_it_changes(entity.file, entity.first_line):
@@ -199,7 +202,7 @@ class OverrunTimer(Rule):
             keeps = any(each.holder == found.subject != each.entity for each in waits)
             return None if keeps or found.lasted < _IN_VAIN else Weight.PROBLEM
         calls = timeline.calls_of(found.subject, Window(0, timeline.end + 1))
-        if calls < 2:
+        if calls < 2 or waits_for_no_reply(found.subject, timeline):
             return None
         if found.count < _HABIT or 2 * found.count < calls:
             return Weight.REMARK
