@@ -7,7 +7,6 @@ import pytest
 from sim.diagnosis import Explanation, diagnose
 from sim.diagnosis.edits.actions import end_if_cancelled
 from sim.diagnosis.edits.code_edit import diff
-from sim.diagnosis.rule import Weight
 from tests.diagnosis.edits.edited_source import changed
 from tests.support.engine_runs import run_program
 
@@ -207,43 +206,3 @@ def test_the_innermost_loop_of_a_callback_that_does_not_ask_yet_is_edited(execut
     )
     expected = ["if goal.is_cancel_requested:", "    goal.canceled()", "    return Turn.Result()"]
     assert lines == ([f"+            {each}" for each in expected] if loops else None)
-
-
-FORGETFUL = """
-import rclpy
-from example_interfaces.action import Fibonacci
-from rclpy.action import ActionClient, ActionServer
-
-def execute(goal):
-    {before}
-    return Fibonacci.Result()
-
-rclpy.init()
-node = rclpy.create_node("node")
-server = ActionServer(node, Fibonacci, "fib", execute)
-client = ActionClient(node, Fibonacci, "fib")
-node.create_timer(0.5, lambda: client.send_goal_async(Fibonacci.Goal()))
-rclpy.spin(node)
-"""
-
-
-def test_an_execute_callback_that_does_not_say_how_its_goal_ended_is_told(tmp_path: Path) -> None:
-    source = FORGETFUL.format(before="pass")
-    timeline = run_program(tmp_path, source, seconds=1.2).timeline
-    (found,) = (each for each in diagnose(timeline) if each.rule.id == "goal-state-not-set")
-    assert found.weight_in(timeline) is Weight.REMARK
-    told = found.explained(timeline)
-    assert told.what == (
-        "execute returned without saying how its goal of /fib ended, so it was aborted (2 times in all)"
-    )
-    assert str(told.place) == "node.py:6"
-    text = source.replace("    return Fibonacci", "    goal.succeed()\n    return Fibonacci")
-    assert text != source
-    again = run_program(tmp_path, text, seconds=1.2).timeline
-    assert not any(each.rule.id == "goal-state-not-set" for each in diagnose(again))
-
-
-def test_of_an_execute_callback_that_raises_nothing_is_said_of_its_goals_state(tmp_path: Path) -> None:
-    timeline = run_program(tmp_path, FORGETFUL.format(before="goal.request.nothing"), seconds=1.2).timeline
-    assert any(each.text.startswith("Goal state not set") for each in timeline.logs)
-    assert not any(each.rule.id == "goal-state-not-set" for each in diagnose(timeline))

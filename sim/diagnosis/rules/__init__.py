@@ -1,7 +1,7 @@
 """All rules, in the order in which their findings are listed: those that stop a program come first."""
 
 from sim.diagnosis.rule import Rule
-from sim.diagnosis.rules.actions import CancelIgnored, GoalNeverExecuted, GoalStateNotSet
+from sim.diagnosis.rules.actions import CancelIgnored, GoalNeverExecuted
 from sim.diagnosis.rules.clocks import AlwaysDue, ClockNeverStarts, TimesKept, TriggersItself
 from sim.diagnosis.rules.deadlock import NeedsOneMoreWorker, SelfMadeDeadlock
 from sim.diagnosis.rules.endless import EndlessWait, StaysInLoop, StillComputing
@@ -80,7 +80,6 @@ RULES: tuple[Rule, ...] = (
     ParameterOverruled(),
     Slip(),
     AnswerOverlooked(),
-    GoalStateNotSet(),
     ExceptionSwallowed(),
     ExceptionCaught(),
     UnreturnedResponse(),

@@ -7,18 +7,16 @@ from sim.diagnosis.rule import (
     Explanation,
     Finding,
     Rule,
-    Weight,
     by_edit,
     entity_of,
     line_of,
     made_at,
-    place_of,
 )
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import often, who
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
-from sim.trace.events import EntityKind, Logged, NoticeKind
+from sim.trace.events import EntityKind, NoticeKind
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
@@ -109,37 +107,4 @@ class GoalNeverExecuted(Rule):
         )
 
 
-class GoalStateNotSet(Rule):
-    """An execute callback returned, and did not say how its goal ended, so that rclpy aborted it.
-
-    Source: rclpy's ``ActionServer._execute_goal``, which logs a warning of it, and no callback runs between.
-    """
-
-    id = "goal-state-not-set"
-    summary = "an action's execute callback returns and does not say how its goal ended"
-    weight = Weight.REMARK
-
-    def check(self, view: TimelineView) -> Iterator[Finding]:
-        """Yield each such call, unless it raised."""
-        timeline = view.timeline
-        for log in timeline.logs[timeline.logs_until(view.window.start) :]:
-            if isinstance(log, Logged) and log.text.startswith(_ABORTED):
-                spans = timeline.spans_on(log.thread, Window(0, log.t + 1)) if log.thread else ()
-                for span in spans[-1:]:
-                    is_execute = timeline.entities[span.entity].kind is EntityKind.WAITABLE
-                    if is_execute and not span.error:
-                        yield Finding(self, span.start, log.t, span.entity)
-
-    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        server, subject = entity_of(found, timeline), who(found.subject, timeline)
-        return Explanation(
-            f"{subject} returned without saying how its goal of {server.name} ended, so it was "
-            f"aborted{often(found.count)}",
-            "an execute callback returns the result, and has to say by itself whether its goal succeeded",
-            "call succeed() on the goal handle before the return, or abort() or canceled() if it failed",
-            place_of(found.subject, timeline),
-        )
-
-
-_ABORTED = "Goal state not set, assuming aborted"
 _RESULT = "/_action/get_result"
