@@ -221,7 +221,7 @@ class Console:
         """Return the seconds that the console's own thread computes before it answers each of some keys."""
         taken = []
         for number in range(keys):
-            wanted = ("robot", "factory")[number % 2]
+            wanted = ("code", "factory")[number % 2]
             pressed, computed = time.monotonic(), time.thread_time()
             self.app.simulate_key(str(self.screen.PANES_HERE.index(wanted) + 1))
             while not self.screen.query_one(f"#{wanted}").has_class("-current"):
