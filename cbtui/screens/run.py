@@ -241,8 +241,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         for lines in (*self.query(CodeView), *self.query(LogLines), *self.query(ChecksView)):
             self.watch(lines, "picked", self.redraw)
         self.watch(self.query_one(LogLines), "follows", self.redraw)
-        # Collect garbage before the first key: it takes longer than drawing.
-        self.call_after_refresh(collect_now)
+        self.call_after_refresh(collect_now)  # before the first key, as it takes longer than drawing
 
     def start(self) -> None:
         """Start the first run."""
@@ -265,7 +264,8 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
 
     @on(RunController.Delivered)
     def _take(self, message: RunController.Delivered) -> None:
-        self.tell(self.runs.take(message))
+        if (warning := self.runs.take(message)) is not None:
+            self.notify(warning, severity="warning", markup=False)
         if message.run == self.runs.number:
             self._frames.grow()
 
