@@ -296,6 +296,18 @@ def test_a_problem_that_comes_while_the_window_is_open_is_tried_up_to_where_it_s
     assert trial.judge(found, APART).helps
 
 
+def first_trial(subject: ShownProgram, seconds: int) -> tuple[CureTrial, ExplainedFinding]:
+    """A trial of cures for the program's run of so many seconds, and what was found first in that."""
+    setup = subject.set_up(None, None)
+    ran = run_to_end(msgspec.structs.replace(setup, until=seconds * SECOND))
+    (found, *_) = told_of(ran.events)
+    material = SimpleNamespace(batches=lambda: ())
+    run = SimpleNamespace(timeline=ran.timeline, setup=setup, material=lambda: material)
+    runs: Any = SimpleNamespace(timeline=ran.timeline, run=run)
+    restarts: Any = SimpleNamespace(changes=Changes())
+    return CureTrials(runs, restarts, subject, lambda: None).begin(), found
+
+
 @pytest.mark.slow
 def test_a_cure_that_lets_a_slow_timer_end_a_wait_is_tried_until_that_comes(tmp_path: Path) -> None:
     program = tmp_path / "node.py"
@@ -308,14 +320,7 @@ def test_a_cure_that_lets_a_slow_timer_end_a_wait_is_tried_until_that_comes(tmp_
         "node.create_timer(6.0, drain)\nrclpy.spin(node)\n"
     )
     subject = of_file(program, (), "virtual")
-    setup = subject.set_up(None, None)
-    ran = run_to_end(msgspec.structs.replace(setup, until=2 * SECOND))
-    (found, *_) = told_of(ran.events)
-    material = SimpleNamespace(batches=lambda: ())
-    run = SimpleNamespace(timeline=ran.timeline, setup=setup, material=lambda: material)
-    runs: Any = SimpleNamespace(timeline=ran.timeline, run=run)
-    restarts: Any = SimpleNamespace(changes=Changes())
-    trial = CureTrials(runs, restarts, subject, lambda: None).begin()
+    trial, found = first_trial(subject, 2)
     (cure,) = trial.cures(found)
     assert trial.judge(found, cure).helps
 
@@ -323,14 +328,7 @@ def test_a_cure_that_lets_a_slow_timer_end_a_wait_is_tried_until_that_comes(tmp_
 @pytest.mark.slow
 def test_two_cures_of_which_none_helps_alone_are_tried_and_offered_together() -> None:
     subject = of_file(Path(diagnosis.__file__).parent / "beginners" / "two_callers.py", (), "virtual")
-    setup = subject.set_up(None, None)
-    ran = run_to_end(msgspec.structs.replace(setup, until=3 * SECOND))
-    (found, *_) = told_of(ran.events)
-    material = SimpleNamespace(batches=lambda: ())
-    run = SimpleNamespace(timeline=ran.timeline, setup=setup, material=lambda: material)
-    runs: Any = SimpleNamespace(timeline=ran.timeline, run=run)
-    restarts: Any = SimpleNamespace(changes=Changes())
-    trial = CureTrials(runs, restarts, subject, lambda: None).begin()
+    trial, found = first_trial(subject, 3)
     *alone, last = (trial.judge(found, each) for each in trial.cures(found))
     assert {each.helps for each in alone} == {False}
     assert last.helps

@@ -121,7 +121,7 @@ class CallbackSuspended(TraceEvent, frozen=True, tag="callback_suspend"):
     entity: EntityId
     thread: ThreadId
     frames: Maybe[Frames] = ()
-    """The lines of the program's own at which it awaits, from the callback inwards; none on real ROS 2."""
+    """The lines of the program's own at which it awaits, from the callback inwards."""
 
 
 class CallbackResumed(TraceEvent, frozen=True, tag="callback_resume"):
